@@ -1,0 +1,1 @@
+int sim_stub(void) { return 0; }

@@ -1,0 +1,512 @@
+"""The scene: bodies, joints and gravity in SI units, y up; its checks, its JSON, its mass properties."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import tempfile
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import msgspec
+
+__all__ = ["Body", "Circle", "InputError", "Joint", "Polygon", "Rectangle", "Scene", "View", "parse_json"]
+
+Vector: TypeAlias = tuple[float, float]
+
+_KEPT = "(kept)"  # the encoded name of `extra`: no key of a file is meant by it
+MAX_BYTES = 64 << 20  # a scene of 100,000 bodies has about 20 MB
+MAX_VERTICES = 10_000  # of one polygon: the check for crossing sides is quadratic at worst
+
+
+class InputError(ValueError):
+    """Input that cannot be used: where, what is wrong, and what to do about it.
+
+    Attributes:
+        path: the element, as ``bodies[3].position[0]`` or ``line 3 column 5``; empty for the whole input.
+        problem: what is wrong there, in a few words.
+        hint: what to do; may be empty.
+    """
+
+    def __init__(self, path: str, problem: str, hint: str = "") -> None:
+        super().__init__(f"{path}: {problem}" if path else problem)
+        self.path, self.problem, self.hint = path, problem, hint
+
+
+class Circle(msgspec.Struct, tag="circle", frozen=True):
+    """A disk about the body's position. radius: [m], > 0."""
+
+    radius: float
+
+
+class Rectangle(msgspec.Struct, tag="rectangle", frozen=True):
+    """A rectangle about the body's position. size: width and height before turning [m], each > 0."""
+
+    size: Vector
+
+    @property
+    def vertices(self) -> list[Vector]:
+        w, h = self.size[0] / 2, self.size[1] / 2
+        return [(-w, -h), (w, -h), (w, h), (-w, h)]
+
+
+class Polygon(msgspec.Struct, tag="polygon", frozen=True):
+    """A simple polygon, convex or concave. vertices: about the body's position [m], either way round."""
+
+    vertices: list[Vector]
+
+
+Shape: TypeAlias = Circle | Rectangle | Polygon
+
+
+class Body(msgspec.Struct, kw_only=True):
+    """A rigid body.
+
+    Attributes:
+        id: name, unique in its scene.
+        shape: outline about the centre of mass.
+        position: centre of mass [m].
+        angle: counter-clockwise [rad].
+        velocity: [m/s].  angular_velocity: [rad/s].
+        anchored: fixed to the background; its velocity is ignored.
+        density: [kg/m²]; used for what `mass` and `moment` leave open.
+        mass: [kg] or None.  moment: about the centre of mass [kg m²] or None.
+        friction: Coulomb's coefficient; a touching pair has √(μa μb).
+        elasticity: coefficient of restitution, 0 to 1; a touching pair has max(ea, eb).
+        color: "#rrggbb", or None for one from the palette.
+        strokes: strokes of the sketch that drew it.  score: the reading's probability, 0 to 1.
+        extra: keys that are not this program's; kept through load and save.
+    """
+
+    id: str
+    shape: Shape
+    position: Vector
+    angle: float = 0.0
+    velocity: Vector = (0.0, 0.0)
+    angular_velocity: float = 0.0
+    anchored: bool = False
+    density: float = 1.0
+    mass: float | None = None
+    moment: float | None = None
+    friction: float = 0.5
+    elasticity: float = 0.3
+    color: str | None = None
+    strokes: list[int] | None = None
+    score: float | None = None
+    extra: dict[str, Any] = msgspec.field(default_factory=dict, name=_KEPT)
+
+    def mass_properties(self) -> tuple[float, float]:
+        """Mass [kg] and moment about the centre of mass [kg m²], as if the body were not anchored.
+
+        An outline of uniform density unless `mass` or `moment` say otherwise; a given mass alone
+        scales the moment with it.
+        """
+        area, _, second = area_properties(self.shape)
+        mass = self.density * area if self.mass is None else self.mass
+        moment = mass * second / area if self.moment is None else self.moment
+        return mass, moment
+
+    def outline(self) -> list[Vector]:
+        """The vertices in the scene's frame [m]; a circle as a polygon of 64 sides."""
+        if isinstance(self.shape, Circle):
+            r = self.shape.radius
+            local = [(r * math.cos(k * math.pi / 32), r * math.sin(k * math.pi / 32)) for k in range(64)]
+        else:
+            local = list(self.shape.vertices)
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        return [(self.position[0] + c * x - s * y, self.position[1] + s * x + c * y) for x, y in local]
+
+
+class Joint(msgspec.Struct, kw_only=True):
+    """A pivot: the point `position` [m] of the two bodies stays together and they turn about it.
+
+    bodies: two ids; None is the background.  Two pivots on one pair hold it rigidly (a pin).
+    """
+
+    bodies: tuple[str | None, str | None]
+    position: Vector
+    type: str = "pivot"
+    extra: dict[str, Any] = msgspec.field(default_factory=dict, name=_KEPT)
+
+
+class View(msgspec.Struct, kw_only=True):
+    """How the scene lies on the page [pixels]: (px, py), y down, is (px, -py) / pixels_per_metre."""
+
+    pixels_per_metre: float = 100.0
+    width: float | None = None
+    height: float | None = None
+    extra: dict[str, Any] = msgspec.field(default_factory=dict, name=_KEPT)
+
+
+class Scene(msgspec.Struct, kw_only=True):
+    """What `sim` runs. See the README's scene JSON for the format that load and save speak.
+
+    gravity: [m/s²], y up.
+    """
+
+    bodies: list[Body] = []
+    joints: list[Joint] = []
+    gravity: Vector = (0.0, 0.0)
+    view: View | None = None
+    notes: list[str] = []
+    extra: dict[str, Any] = msgspec.field(default_factory=dict, name=_KEPT)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Scene:
+        """Read scene JSON. Raises InputError for what is not a scene, OSError for what cannot be read."""
+        return cls.from_json(Path(path).read_bytes())
+
+    @classmethod
+    def from_json(cls, data: bytes | str) -> Scene:
+        return cls.from_dict(parse_json(data, MAX_BYTES))
+
+    @classmethod
+    def from_dict(cls, d: Any) -> Scene:
+        """Build and check a scene from scene JSON's objects. Raises InputError that names the bad element."""
+        if not isinstance(d, dict):
+            raise InputError("", f"a scene is a JSON object, not {_kind(d)}")
+        _check_header(d)
+        if "bodies" not in d:
+            raise InputError(
+                "bodies", "missing", "a scene has a list of bodies, each with id, shape and position"
+            )
+        try:
+            scene = msgspec.convert(d, cls)
+        except msgspec.ValidationError as e:
+            raise _from_msgspec(e) from None
+        _keep_unknown_keys(scene, d)
+        scene.check()
+        for body in scene.bodies:
+            _centre(body)
+        return scene
+
+    def to_dict(self) -> dict[str, Any]:
+        """Scene JSON's objects: plain dicts, lists, numbers and strings."""
+        out: dict[str, Any] = {"format": "sketchsim-scene", "version": 1, "gravity": list(self.gravity)}
+        out["bodies"] = [_plain(b) for b in self.bodies]
+        out["joints"] = [_plain(j) for j in self.joints]
+        if self.view is not None:
+            out["view"] = _plain(self.view)
+        out["notes"] = list(self.notes)
+        return out | self.extra
+
+    def to_json(self) -> bytes:
+        return msgspec.json.format(msgspec.json.encode(self.to_dict()), indent=1) + b"\n"
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write scene JSON; an existing file is replaced only once the new one is whole."""
+        folder = Path(path).resolve().parent
+        fd, beside = tempfile.mkstemp(dir=folder, suffix=".json")
+        try:
+            with os.fdopen(fd, "wb") as f:
+                f.write(self.to_json())
+            os.replace(beside, path)
+        except BaseException:
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(beside)
+            raise
+
+    def check(self) -> None:
+        """Raise InputError at the first value that no physical scene can have."""
+        _finite(self.gravity, "gravity")
+        seen: dict[str, int] = {}
+        for i, body in enumerate(self.bodies):
+            path = f"bodies[{i}]"
+            if body.id in seen:
+                raise InputError(
+                    f"{path}.id", f"{body.id!r} is the id of bodies[{seen[body.id]}] too", "ids are unique"
+                )
+            seen[body.id] = i
+            _check_body(body, path)
+        for i, joint in enumerate(self.joints):
+            _check_joint(joint, seen, f"joints[{i}]")
+        if self.view is not None:
+            _positive(self.view.pixels_per_metre, "view.pixels_per_metre")
+
+
+# ---------------------------------------------------------------- mass properties
+
+
+def area_properties(shape: Shape) -> tuple[float, Vector, float]:
+    """Area [m²], centroid [m] and second moment of area about the centroid [m⁴].
+
+    Polygon: Green's theorem on the fan of triangles about the first vertex, which keeps the digits of a
+    polygon far from its origin (see any text on the shoelace formula).
+    """
+    if isinstance(shape, Circle):
+        area = math.pi * shape.radius**2
+        return area, (0.0, 0.0), area * shape.radius**2 / 2
+    if isinstance(shape, Rectangle):
+        w, h = shape.size
+        return w * h, (0.0, 0.0), w * h * (w * w + h * h) / 12
+    x0, y0 = shape.vertices[0]
+    twice = mx = my = polar = 0.0
+    for (ax, ay), (bx, by) in zip(shape.vertices, [*shape.vertices[1:], shape.vertices[0]], strict=True):
+        ax, ay, bx, by = ax - x0, ay - y0, bx - x0, by - y0
+        cross = ax * by - ay * bx
+        twice += cross
+        mx += cross * (ax + bx)
+        my += cross * (ay + by)
+        polar += cross * (ax * ax + ax * bx + bx * bx + ay * ay + ay * by + by * by)
+    if twice == 0.0:
+        return 0.0, (x0, y0), 0.0
+    area, cx, cy = twice / 2, mx / (3 * twice), my / (3 * twice)
+    second = polar / 12 - area * (cx * cx + cy * cy)
+    return abs(area), (x0 + cx, y0 + cy), abs(second)
+
+
+def _centre(body: Body) -> None:
+    """Move a polygon's origin to its centroid where the file has it elsewhere; the outline stays where it is.
+
+    An offset within a thousandth of the size is the rounding of printed vertices and is left alone.
+    """
+    if not isinstance(body.shape, Polygon):
+        return
+    _, (cx, cy), _ = area_properties(body.shape)
+    size = max(math.hypot(x - cx, y - cy) for x, y in body.shape.vertices)
+    if math.hypot(cx, cy) <= 1e-3 * size:
+        return
+    c, s = math.cos(body.angle), math.sin(body.angle)
+    body.shape = Polygon([(x - cx, y - cy) for x, y in body.shape.vertices])
+    body.position = (body.position[0] + c * cx - s * cy, body.position[1] + s * cx + c * cy)
+
+
+# ---------------------------------------------------------------- checks
+
+
+def _finite(values: tuple[float, ...], path: str) -> None:
+    for k, v in enumerate(values):
+        if not math.isfinite(v):
+            raise InputError(f"{path}[{k}]", f"{v} is not a finite number")
+
+
+def _number(value: float, path: str) -> None:
+    if not math.isfinite(value):
+        raise InputError(path, f"{value} is not a finite number")
+
+
+def _positive(value: float, path: str) -> None:
+    _number(value, path)
+    if value <= 0:
+        raise InputError(path, f"{value:g} is not greater than 0")
+
+
+def _check_body(body: Body, path: str) -> None:
+    _finite(body.position, f"{path}.position")
+    _finite(body.velocity, f"{path}.velocity")
+    _number(body.angle, f"{path}.angle")
+    _number(body.angular_velocity, f"{path}.angular_velocity")
+    _positive(body.density, f"{path}.density")
+    for name, value in (("mass", body.mass), ("moment", body.moment)):
+        if value is not None:
+            try:
+                _positive(value, f"{path}.{name}")
+            except InputError as e:
+                e.hint = 'a body that must not move has "anchored": true'
+                raise
+    _number(body.friction, f"{path}.friction")
+    if body.friction < 0:
+        raise InputError(f"{path}.friction", f"{body.friction:g} is less than 0")
+    _number(body.elasticity, f"{path}.elasticity")
+    if not 0 <= body.elasticity <= 1:
+        raise InputError(f"{path}.elasticity", f"{body.elasticity:g} is not between 0 and 1")
+    if body.color is not None and not _is_color(body.color):
+        raise InputError(f"{path}.color", f"{body.color!r} is not a color", 'write it as "#4477aa"')
+    _check_shape(body.shape, f"{path}.shape")
+
+
+def _is_color(text: str) -> bool:
+    return len(text) == 7 and text[0] == "#" and all(c in "0123456789abcdefABCDEF" for c in text[1:])
+
+
+def _check_shape(shape: Shape, path: str) -> None:
+    if isinstance(shape, Circle):
+        _positive(shape.radius, f"{path}.radius")
+        return
+    if isinstance(shape, Rectangle):
+        for k in (0, 1):
+            _positive(shape.size[k], f"{path}.size[{k}]")
+        return
+    v = shape.vertices
+    if len(v) < 3:
+        raise InputError(f"{path}.vertices", f"a polygon has at least 3 vertices, not {len(v)}")
+    if len(v) > MAX_VERTICES:
+        raise InputError(f"{path}.vertices", f"{len(v)} vertices; at most {MAX_VERTICES} are taken")
+    for k, p in enumerate(v):
+        _finite(p, f"{path}.vertices[{k}]")
+        if p == v[k - 1]:
+            raise InputError(f"{path}.vertices[{k}]", "the same point as the vertex before it")
+    crossing = _first_crossing(v)
+    if crossing is not None:
+        i, j = crossing
+        raise InputError(
+            f"{path}.vertices",
+            f"the side from vertex {i} crosses the side from vertex {j}",
+            "the sides of a polygon meet only at its vertices",
+        )
+    area, _, _ = area_properties(shape)
+    reach = max(abs(c) for p in v for c in (p[0] - v[0][0], p[1] - v[0][1]))
+    if area <= 1e-12 * reach * reach:
+        raise InputError(f"{path}.vertices", "the polygon has no area")
+
+
+def _first_crossing(v: list[Vector]) -> tuple[int, int] | None:
+    """The first two sides that meet elsewhere than at a shared vertex, or None for a simple polygon.
+
+    Sides are swept in the order of their least x, so that only sides whose spans in x overlap are compared.
+    """
+    n = len(v)
+    order = sorted(range(n), key=lambda i: min(v[i][0], v[(i + 1) % n][0]))
+    active: list[int] = []
+    for i in order:
+        a, b = v[i], v[(i + 1) % n]
+        left = min(a[0], b[0])
+        active = [j for j in active if max(v[j][0], v[(j + 1) % n][0]) >= left]
+        for j in active:
+            c, d = v[j], v[(j + 1) % n]
+            if (i + 1) % n == j or (j + 1) % n == i:
+                # neighbours share one vertex: they may only not fold back over each other
+                shared, p, q = (b, a, d) if (i + 1) % n == j else (a, b, c)
+                if _turn(p, shared, q) == 0 and _ahead(p, shared, q):
+                    return min(i, j), max(i, j)
+            elif _meet(a, b, c, d):
+                return min(i, j), max(i, j)
+        active.append(i)
+    return None
+
+
+def _turn(a: Vector, b: Vector, c: Vector) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _ahead(p: Vector, shared: Vector, q: Vector) -> bool:
+    """Whether p and q, on one line with `shared`, lie on the same side of it."""
+    return (p[0] - shared[0]) * (q[0] - shared[0]) + (p[1] - shared[1]) * (q[1] - shared[1]) > 0
+
+
+def _meet(a: Vector, b: Vector, c: Vector, d: Vector) -> bool:
+    """Whether the closed segments ab and cd have a point in common."""
+    if max(a[1], b[1]) < min(c[1], d[1]) or max(c[1], d[1]) < min(a[1], b[1]):
+        return False
+    u, v, w, x = _turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b)
+    if ((u > 0) != (v > 0) or u == 0 or v == 0) and ((w > 0) != (x > 0) or w == 0 or x == 0):
+        if u == v == w == x == 0:  # on one line: do the spans overlap?
+            return max(min(a[0], b[0]), min(c[0], d[0])) <= min(max(a[0], b[0]), max(c[0], d[0]))
+        return u * v <= 0 and w * x <= 0
+    return False
+
+
+def _check_joint(joint: Joint, ids: dict[str, int], path: str) -> None:
+    if joint.type != "pivot":
+        raise InputError(f"{path}.type", f"{joint.type!r} is not a kind of joint", 'the only kind is "pivot"')
+    _finite(joint.position, f"{path}.position")
+    a, b = joint.bodies
+    for k, name in enumerate((a, b)):
+        if name is not None and name not in ids:
+            raise InputError(
+                f"{path}.bodies[{k}]",
+                f"there is no body {name!r}",
+                "a joint names two bodies; null is the background",
+            )
+    if a == b:
+        raise InputError(
+            f"{path}.bodies",
+            f"both are {json.dumps(a)}",
+            "a joint names two different bodies; null is the background",
+        )
+
+
+def _check_header(d: dict[str, Any]) -> None:
+    found = d.get("format", "sketchsim-scene")
+    if found != "sketchsim-scene":
+        raise InputError("format", f"{found!r} is not 'sketchsim-scene'")
+    if d.get("version", 1) != 1:
+        raise InputError("version", f"{d['version']!r} is not 1", "this program reads version 1")
+
+
+# ---------------------------------------------------------------- JSON
+
+
+def parse_json(data: bytes | str, max_bytes: int = MAX_BYTES) -> Any:
+    """JSON to objects. Raises InputError with line and column for what is not JSON, or when it is too long.
+
+    NaN and Infinity are no JSON, but programs write them: they are let through here, so that the check that
+    follows can name the element that has one.
+    """
+    if len(data) > max_bytes:
+        raise InputError("", f"{len(data) / 1e6:.0f} MB of JSON; at most {max_bytes / 1e6:.0f} MB are taken")
+    if not data.strip():
+        raise InputError("", "the input is empty")
+    try:
+        return msgspec.json.decode(data)
+    except msgspec.DecodeError as e:
+        with contextlib.suppress(ValueError, RecursionError):
+            return json.loads(data)
+        raise _not_json(data, e) from None
+    except RecursionError:
+        raise InputError("", "JSON nested too deeply") from None
+
+
+def _not_json(data: bytes | str, cause: Exception) -> InputError:
+    try:
+        json.loads(data)
+    except json.JSONDecodeError as e:
+        return InputError(f"line {e.lineno} column {e.colno}", f"not JSON: {e.msg[:1].lower()}{e.msg[1:]}")
+    except UnicodeDecodeError as e:
+        return InputError(f"byte {e.start}", "not JSON: not UTF-8 text")
+    except RecursionError:
+        return InputError("", "JSON nested too deeply")
+    except ValueError:
+        pass
+    return InputError("", f"not JSON: {cause}")
+
+
+def _from_msgspec(e: msgspec.ValidationError) -> InputError:
+    """msgspec's 'Expected `float`, got `str` - at `$.bodies[0].angle`' as path and problem."""
+    text, _, path = str(e).partition(" - at `")
+    path = path.rstrip("`").removeprefix("$").removeprefix(".")
+    if text.startswith("Object missing required field "):
+        name = text.split("`")[1]
+        return InputError(f"{path}.{name}" if path else name, "missing")
+    return InputError(path, text[:1].lower() + text[1:].replace("`", ""))
+
+
+def _kind(value: Any) -> str:
+    if value is None:
+        return "null"
+    names = {
+        bool: "a boolean",
+        int: "a number",
+        float: "a number",
+        str: "a string",
+        list: "a list",
+        dict: "an object",
+    }
+    return names.get(type(value), type(value).__name__)
+
+
+_HEADER = {"format", "version"}
+
+
+def _keep_unknown_keys(scene: Scene, d: dict[str, Any]) -> None:
+    scene.extra = _unknown(Scene, d)
+    for body, raw in zip(scene.bodies, d["bodies"], strict=True):
+        body.extra = _unknown(Body, raw)
+    for joint, raw in zip(scene.joints, d.get("joints", []), strict=True):
+        joint.extra = _unknown(Joint, raw)
+    if scene.view is not None:
+        scene.view.extra = _unknown(View, d["view"])
+
+
+def _unknown(cls: type[msgspec.Struct], raw: dict[str, Any]) -> dict[str, Any]:
+    known = set(cls.__struct_encode_fields__) | _HEADER
+    return {k: v for k, v in raw.items() if k not in known}
+
+
+def _plain(part: msgspec.Struct) -> dict[str, Any]:
+    """A struct as JSON's objects, without what was left open, with the keys that were not ours at the end."""
+    out: dict[str, Any] = msgspec.json.decode(msgspec.json.encode(part))  # tuples become lists
+    extra: dict[str, Any] = out.pop(_KEPT)
+    return {k: v for k, v in out.items() if v is not None} | extra

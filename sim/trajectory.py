@@ -1,0 +1,126 @@
+"""What a run of a scene gives: poses and velocities at the sample times, energy, and events between."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.scene import InputError
+
+__all__ = ["Event", "Trajectory"]
+
+Array = NDArray[np.float64]
+
+
+class Event(NamedTuple):
+    """Something that happened between samples.
+
+    Attributes:
+        time: [s].
+        kind: "impact", "contact begun", "contact ended" or "rest".
+        bodies: the pair's ids; at rest the body and None.
+        point: where, in the scene's frame [m].
+        impulse: on the second body, [N s] as (x, y).
+    """
+
+    time: float
+    kind: str
+    bodies: tuple[str, str | None]
+    point: tuple[float, float]
+    impulse: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """The motion of every body of a scene, anchored ones too, in the scene's order.
+
+    Attributes:
+        times: [s], shape (n,).
+        positions: centres of mass [m], shape (n, bodies, 2).
+        angles: [rad], not wrapped, shape (n, bodies).
+        velocities: [m/s], shape (n, bodies, 2).
+        angular_velocities: [rad/s], shape (n, bodies).
+        body_ids: the scene's ids.
+        energy: kinetic, potential and their sum [J], shape (n, 3); potential is zero at the scene's origin.
+        events: what happened between the samples, in the order of time.
+        profile: what the engine did and how long each stage took [s].
+    """
+
+    times: Array
+    positions: Array
+    angles: Array
+    velocities: Array
+    angular_velocities: Array
+    body_ids: list[str]
+    energy: Array
+    events: list[Event] = field(default_factory=list)
+    profile: dict[str, float] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The trajectory as JSON's objects; arrays become nested lists."""
+        out: dict[str, Any] = {
+            "format": "sketchsim-trajectory",
+            "version": 1,
+            "body_ids": list(self.body_ids),
+        }
+        out |= {name: getattr(self, name).tolist() for name in _ARRAYS}
+        out["events"] = [event._asdict() for event in self.events]
+        return out
+
+    def to_json(self) -> bytes:
+        return msgspec.json.encode(self.to_dict()) + b"\n"
+
+    def to_csv(self) -> bytes:
+        """One row a time and body."""
+        out = io.StringIO()
+        write = csv.writer(out, lineterminator="\n")
+        write.writerow(["time", "body", "x", "y", "angle", "vx", "vy", "angular_velocity"])
+        rows = np.concatenate(
+            [self.positions, self.angles[..., None], self.velocities, self.angular_velocities[..., None]],
+            axis=2,
+        ).tolist()
+        for time, bodies in zip(self.times.tolist(), rows, strict=True):
+            for name, values in zip(self.body_ids, bodies, strict=True):
+                write.writerow([time, name, *values])
+        return out.getvalue().encode()
+
+    def to_npz(self) -> bytes:
+        out = io.BytesIO()
+        arrays: dict[str, Any] = {name: getattr(self, name) for name in _ARRAYS}
+        np.savez(out, body_ids=np.array(self.body_ids, dtype=np.str_), **arrays)
+        return out.getvalue()
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Trajectory:
+        """Read .npz or .json. Raises InputError for what is neither, OSError for what cannot be read."""
+        data = Path(path).read_bytes()
+        if data[:2] == b"PK":
+            try:
+                with np.load(io.BytesIO(data), allow_pickle=False) as z:
+                    return cls(body_ids=z["body_ids"].tolist(), **{name: z[name] for name in _ARRAYS})
+            except (KeyError, ValueError, OSError) as e:
+                raise InputError("", f"not a trajectory: {e}") from None
+        try:
+            d = msgspec.json.decode(data)
+            arrays: dict[str, Any] = {name: np.array(d[name], dtype=np.float64) for name in _ARRAYS}
+            events = [
+                Event(e["time"], e["kind"], tuple(e["bodies"]), tuple(e["point"]), tuple(e["impulse"]))
+                for e in d.get("events", [])
+            ]
+            return cls(body_ids=list(d["body_ids"]), events=events, **arrays)
+        except (msgspec.DecodeError, KeyError, TypeError, ValueError) as e:
+            raise InputError("", f"not a trajectory: {e}") from None
+
+
+_ARRAYS = ("times", "positions", "angles", "velocities", "angular_velocities", "energy")

@@ -1,0 +1,11 @@
+"""Ink to scenes: strokes or pictures of sketches, read as bodies, anchors, pivots and gravity.
+
+``recognize(load_sketch("cart.json")).scene`` is a `sim.Scene`.
+"""
+
+from __future__ import annotations
+
+from sketch.ink import Sketch, Stroke
+from sketch.recognize import Reading, Recognition, recognize
+
+__all__ = ["Reading", "Recognition", "Sketch", "Stroke", "recognize"]

@@ -1,0 +1,1 @@
+int ink_stub(void) { return 0; }
