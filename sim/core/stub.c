@@ -1,1 +1,0 @@
-int sim_stub(void) { return 0; }
