@@ -1,14 +1,216 @@
-"""simulate(): the impulse engine of core/ through ctypes."""
+"""simulate(): the impulse engine of core/ through ctypes, one call for a whole run."""
 
 from __future__ import annotations
 
-from sim.scene import Scene
-from sim.trajectory import Trajectory
+import ctypes
+import math
+import sys
+from array import array
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sim.scene import Circle, InputError, Scene
+from sim.trajectory import Event, Trajectory
 
 __all__ = ["simulate"]
 
+ABI = 1
+MAX_SAMPLES = 10_000_000
+MAX_VALUES = 500_000_000  # 4 GB of samples
+DEFAULT_TOLERANCE = 1e-4
+
+_EVENT_KINDS = ("impact", "contact begun", "contact ended", "rest")
+_PROFILE = (
+    "total_time flight_time smooth_time event_time impact_time crowd_time sample_time flights events impacts "
+    "smooth_steps smooth_evals crowd_steps crowd_contacts pairs rows rests separated separation let_overlap "
+    "budget_spent"
+).split()
+
+_BODY_DOUBLES = 11  # of SimBody
+
+
+class _Input(ctypes.Structure):
+    _fields_ = [
+        ("body_count", ctypes.c_int32),
+        ("joint_count", ctypes.c_int32),
+        ("bodies", ctypes.c_void_p),
+        ("vertex_start", ctypes.c_void_p),
+        ("anchored", ctypes.c_void_p),
+        ("vertices", ctypes.c_void_p),
+        ("joint_bodies", ctypes.c_void_p),
+        ("joint_points", ctypes.c_void_p),
+        ("gravity", ctypes.c_double * 2),
+    ]
+
+
+class _Options(ctypes.Structure):
+    _fields_ = [("fps", ctypes.c_double), ("sample_count", ctypes.c_int64), ("tolerance", ctypes.c_double)]
+
+
+class _Event(ctypes.Structure):
+    _fields_ = [
+        ("time", ctypes.c_double),
+        ("kind", ctypes.c_int32),
+        ("body", ctypes.c_int32 * 2),
+        ("reserved", ctypes.c_int32),
+        ("point", ctypes.c_double * 2),
+        ("impulse", ctypes.c_double * 2),
+    ]
+
+
+class _Profile(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_double) for name in _PROFILE]
+
+
+def _load() -> ctypes.CDLL:
+    suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+    path = Path(__file__).with_name("_core" + suffix)
+    try:
+        core = ctypes.CDLL(str(path))
+    except OSError as e:
+        raise ImportError(f"the engine's library does not load ({e}); install the project again") from None
+    core.sim_struct_size.restype = ctypes.c_size_t
+    core.sim_create.restype = ctypes.c_void_p
+    core.sim_error.restype = ctypes.c_char_p
+    core.sim_event_count.restype = ctypes.c_int64
+    core.sim_create.argtypes = [ctypes.c_void_p]
+    core.sim_run.argtypes = [ctypes.c_void_p] * 4
+    core.sim_events.argtypes = core.sim_profile.argtypes = [ctypes.c_void_p] * 2
+    core.sim_error.argtypes = core.sim_event_count.argtypes = core.sim_destroy.argtypes = [ctypes.c_void_p]
+    sizes = (8 * _BODY_DOUBLES, *(ctypes.sizeof(t) for t in (_Input, _Options, _Event, _Profile)))
+    found = tuple(core.sim_struct_size(k) for k in range(len(sizes)))
+    if core.sim_abi() != ABI or found != sizes:
+        raise ImportError(f"{path.name} does not belong to this version; install the project again")
+    return core
+
+
+_core: ctypes.CDLL | None = None
+
 
 def simulate(
-    scene: Scene, duration: float = 10.0, fps: float = 60.0, tolerance: float = 1e-4, engine: str = "impulse"
+    scene: Scene,
+    duration: float = 10.0,
+    fps: float = 60.0,
+    tolerance: float | None = None,
+    engine: str = "impulse",
 ) -> Trajectory:
-    raise NotImplementedError
+    """Run a scene and sample it at 0, 1/fps, 2/fps, ... up to duration.
+
+    Args:
+        scene: what to run; it is not changed.
+        duration: [s], >= 0.
+        fps: samples a second, > 0.
+        tolerance: the error in position to keep to [m]; 1e-4 without it.
+        engine: "impulse" for this project's own, "pymunk" for the reference.
+
+    Raises:
+        InputError: for a scene that fails its checks, or an argument out of range.
+        RuntimeError: when the run fails (numbers beyond the range of doubles, no memory).
+    """
+    global _core
+    scene.check()
+    samples = _sample_count(duration, fps, len(scene.bodies))
+    if tolerance is None:
+        tolerance = DEFAULT_TOLERANCE
+    if not (math.isfinite(tolerance) and tolerance > 0):
+        raise InputError("tolerance", f"{tolerance} is not a length greater than 0")
+    if engine == "pymunk":
+        from sim.reference import run_pymunk
+
+        return run_pymunk(scene, duration, fps)
+    if engine != "impulse":
+        raise InputError("engine", f"{engine!r} is neither 'impulse' nor 'pymunk'")
+    if _core is None:
+        _core = _load()
+    return _run(_core, scene, samples, fps, tolerance)
+
+
+def _sample_count(duration: float, fps: float, bodies: int) -> int:
+    if not (math.isfinite(duration) and duration >= 0):
+        raise InputError("duration", f"{duration} is not a time of 0 or more")
+    if not (math.isfinite(fps) and fps > 0):
+        raise InputError("fps", f"{fps} is not a number greater than 0")
+    count = duration * fps
+    if count > MAX_SAMPLES or count * max(bodies, 1) * 6 > MAX_VALUES:
+        raise InputError("duration", f"{count:.0f} samples of {bodies} bodies are too many", "take fewer fps")
+    return math.floor(count * (1 + 1e-12) + 1e-9) + 1
+
+
+def _pack(scene: Scene) -> tuple[_Input, list[array[Any]]]:
+    """The scene as the core's flat arrays, and what must stay alive while they are used."""
+    index = {body.id: i for i, body in enumerate(scene.bodies)}
+    index_of: dict[str | None, int] = {**index, None: -1}
+    bodies, vertices, points = array("d"), array("d"), array("d")
+    start, anchored, pairs = array("i", [0]), array("i"), array("i")
+    for b in scene.bodies:
+        shape = b.shape
+        if isinstance(shape, Circle):
+            radius = shape.radius
+        else:
+            radius = 0.0
+            for v in shape.vertices:
+                vertices.extend(v)
+        velocity, spin = ((0.0, 0.0), 0.0) if b.anchored else (b.velocity, b.angular_velocity)
+        bodies.extend(
+            (*b.position, b.angle, *velocity, spin, *b.mass_properties(), b.friction, b.elasticity, radius)
+        )
+        start.append(len(vertices) // 2)
+        anchored.append(b.anchored)
+    for j in scene.joints:
+        pairs.extend((index_of[j.bodies[0]], index_of[j.bodies[1]]))
+        points.extend(j.position)
+    parts = [bodies, start, anchored, vertices, pairs, points]
+    addresses = [part.buffer_info()[0] for part in parts]
+    packed = _Input(len(scene.bodies), len(scene.joints), *addresses, (ctypes.c_double * 2)(*scene.gravity))
+    return packed, parts
+
+
+def _run(core: ctypes.CDLL, scene: Scene, samples: int, fps: float, tolerance: float) -> Trajectory:
+    packed, parts = _pack(scene)
+    n = len(scene.bodies)
+    frames = np.empty((samples, n, 6))
+    energy = np.empty((samples, 2))
+    sim = core.sim_create(ctypes.byref(packed))
+    del parts
+    if not sim:
+        raise RuntimeError("out of memory")
+    try:
+        options = _Options(fps, samples, tolerance)
+        if core.sim_run(sim, ctypes.byref(options), frames.ctypes.data, energy.ctypes.data) != 0:
+            raise RuntimeError(core.sim_error(sim).decode())
+        ids = [body.id for body in scene.bodies]
+        events = _events(core, sim, ids)
+        profile = _Profile()
+        core.sim_profile(sim, ctypes.byref(profile))
+    finally:
+        core.sim_destroy(sim)
+    return Trajectory(
+        times=np.arange(samples) / fps,
+        positions=frames[:, :, 0:2],
+        angles=frames[:, :, 2],
+        velocities=frames[:, :, 3:5],
+        angular_velocities=frames[:, :, 5],
+        body_ids=ids,
+        energy=np.column_stack([energy, energy.sum(1)]),
+        events=events,
+        profile={name: getattr(profile, name) for name in _PROFILE},
+    )
+
+
+def _events(core: ctypes.CDLL, sim: int, ids: list[str]) -> list[Event]:
+    count = core.sim_event_count(sim)
+    raw = (_Event * count)()
+    core.sim_events(sim, raw)
+    name: list[str | None] = [*ids, None]  # index -1: none
+    return [
+        Event(
+            e.time,
+            _EVENT_KINDS[e.kind],
+            (ids[e.body[0]], name[e.body[1]]),
+            (e.point[0], e.point[1]),
+            (e.impulse[0], e.impulse[1]),
+        )
+        for e in raw
+    ]
