@@ -1,0 +1,88 @@
+"""The C core of scanning: thinning and tracing, through ctypes."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import sys
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Chains", "thin", "trace"]
+
+_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+_MASK = np.ctypeslib.ndpointer(np.uint8, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
+_INTS = np.ctypeslib.ndpointer(np.int32, ndim=1, flags=("C_CONTIGUOUS", "WRITEABLE"))
+
+
+@functools.cache
+def _library() -> ctypes.CDLL:
+    library = ctypes.CDLL(str(Path(__file__).parent.parent / ("_ink" + _SUFFIX)))
+    int32 = ctypes.c_int32
+    library.ink_thin.argtypes = [_MASK, int32, int32]
+    library.ink_thin.restype = int32
+    library.ink_trace.argtypes = [_MASK, int32, int32, int32, *[_INTS] * 6]
+    library.ink_trace.restype = int32
+    return library
+
+
+def thin(mask: NDArray[Any]) -> tuple[NDArray[np.uint8], int]:
+    """The skeleton of a mask, 1 on lines one pixel wide, shape (h, w), and how many pixels it has.
+
+    The outermost rows and columns count as paper.
+    """
+    skeleton = np.array(mask, np.uint8, order="C")
+    height, width = skeleton.shape
+    count = int(_library().ink_thin(skeleton, width, height))
+    if count < 0:
+        raise MemoryError("no memory for thinning")
+    return skeleton, count
+
+
+@dataclass(frozen=True, eq=False)
+class Chains:
+    """A skeleton as chains of pixels between its nodes.
+
+    Attributes:
+        chains: [pixels] x and y along each chain, shape (n, 2), without the pixels of its nodes.
+        ends: the nodes at both ends of each chain; -1 is a free end, -2 at both ends a ring.
+        nodes: [pixels] the centre of each node's pixels, shape (k, 2).
+    """
+
+    chains: list[NDArray[np.float64]]
+    ends: list[tuple[int, int]]
+    nodes: NDArray[np.float64]
+
+
+def trace(skeleton: NDArray[np.uint8], count: int) -> Chains:
+    """Trace a skeleton of `count` pixels, as `thin` leaves it."""
+    height, width = skeleton.shape
+    points, node_pixels, node_ids = (np.zeros(max(count, 1), np.int32) for _ in range(3))
+    start, ends, counts = (
+        np.zeros(count + 1, np.int32),
+        np.zeros(2 * count + 2, np.int32),
+        np.zeros(3, np.int32),
+    )
+    arrays = (points, start, ends, node_pixels, node_ids, counts)
+    if _library().ink_trace(skeleton, width, height, count, *arrays) != 0:
+        raise MemoryError("no memory for tracing")
+    chain_count, node_count, node_size = (int(n) for n in counts)
+
+    def pixels(index: NDArray[np.int32]) -> NDArray[np.float64]:
+        return np.stack([index % width, index // width], axis=1).astype(np.float64)
+
+    along = pixels(points[: start[chain_count]])
+    members = node_ids[:node_size]
+    size = np.maximum(np.bincount(members, minlength=node_count), 1)
+    at = pixels(node_pixels[:node_size])
+    nodes = np.stack([np.bincount(members, at[:, k], minlength=node_count) / size for k in (0, 1)], axis=1)
+    return Chains(
+        [along[a:b] for a, b in pairwise(start[: chain_count + 1])],
+        [(int(a), int(b)) for a, b in ends[: 2 * chain_count].reshape(-1, 2)],
+        nodes,
+    )

@@ -1,0 +1,90 @@
+"""Picture files → pixels: upright, BGR, 8 bits, on white where transparent."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.scene import InputError
+from sketch.scan.header import Header, probe
+
+__all__ = ["decode", "is_picture"]
+
+MAX_PIXELS = 64_000_000  # 192 MB as BGR; a phone's sharpest mode has 48 to 50 million
+
+
+def is_picture(data: bytes) -> bool:
+    """Whether the bytes begin as a picture file that `decode` knows."""
+    return probe(data) is not None
+
+
+def decode(data: bytes) -> NDArray[np.uint8]:
+    """The picture in a file's bytes, as displayed upright: BGR, shape (h, w, 3).
+
+    PNG, JPEG, WebP, TIFF and BMP.  Raises InputError for anything else, for a file that ends too early and
+    for a picture of more than MAX_PIXELS, which is refused by its header.
+    """
+    if not data:
+        raise InputError("", "the file is empty")
+    header = probe(data)
+    if header is None:
+        raise InputError("", "not a picture", "PNG, JPEG, WebP, TIFF and BMP are read")
+    _check_size(header.width, header.height)
+    return _to_bgr8(_decode_with_cv2(data, header))
+
+
+def _check_size(width: int, height: int) -> None:
+    if width < 1 or height < 1:
+        raise InputError("", f"a picture of {width} x {height} pixels")
+    if width * height > MAX_PIXELS:
+        raise InputError(
+            "",
+            f"a picture of {width} x {height} pixels; at most {MAX_PIXELS // 1_000_000} million are taken",
+            "make it smaller: 2000 pixels across are plenty",
+        )
+
+
+def _decode_with_cv2(data: bytes, header: Header) -> NDArray[Any]:
+    import cv2
+
+    raw = np.frombuffer(data, np.uint8)
+    # a JPEG has neither transparency nor 16 bits, and is turned upright by cv2; the others are by us
+    flags = cv2.IMREAD_COLOR if header.format == "jpeg" else cv2.IMREAD_UNCHANGED
+    try:
+        picture = cv2.imdecode(raw, flags)
+    except cv2.error:
+        picture = None
+    if picture is None:
+        raise InputError("", f"a {header.format.upper()} picture that is damaged or cut short")
+    stored = (header.height, header.width)
+    if header.format != "jpeg" and header.orientation > 1 and picture.shape[:2] == stored:
+        picture = _upright(picture, header.orientation)
+    return np.asarray(picture)
+
+
+def _upright(picture: NDArray[Any], orientation: int) -> NDArray[Any]:
+    """Undo EXIF's orientation: 2, 4, 5, 7 are mirrored, 3 is upside down, 6 and 8 lie on a side."""
+    if orientation in (5, 6, 7, 8):
+        picture = picture.swapaxes(0, 1)
+    if orientation in (3, 4, 7, 8):
+        picture = picture[::-1]
+    if orientation in (2, 3, 6, 7):
+        picture = picture[:, ::-1]
+    return np.ascontiguousarray(picture)
+
+
+def _to_bgr8(picture: NDArray[Any]) -> NDArray[np.uint8]:
+    import cv2
+
+    if picture.dtype == np.uint16:
+        picture = cv2.convertScaleAbs(picture, alpha=1 / 257)
+    elif picture.dtype != np.uint8:  # floating-point TIFF: 0 to 1 by custom
+        picture = np.clip(np.nan_to_num(picture) * 255, 0, 255).astype(np.uint8)
+    if picture.ndim == 2:
+        return np.asarray(cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR), np.uint8)
+    if picture.shape[2] == 4:
+        alpha = picture[..., 3:].astype(np.uint16)
+        return ((picture[..., :3] * alpha + 255 * (255 - alpha)) // 255).astype(np.uint8)
+    return np.ascontiguousarray(picture[..., :3], np.uint8)

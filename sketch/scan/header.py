@@ -1,0 +1,130 @@
+"""What the header of a picture file says: its format, size and orientation, before anything is decoded."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+
+__all__ = ["Header", "probe"]
+
+
+@dataclass(frozen=True)
+class Header:
+    """format: "png", "jpeg", "webp", "tiff", "bmp", "gif", "heic" or "pdf".
+
+    width, height: [pixels] as stored, 0 where the header does not give them (HEIC and PDF, whose own
+    libraries are asked).  orientation: EXIF's, 1 (upright) to 8.
+    """
+
+    format: str
+    width: int = 0
+    height: int = 0
+    orientation: int = 1
+
+
+def probe(data: bytes) -> Header | None:
+    """The header of a picture file, or None for what is no picture or ends within its header."""
+    try:
+        return _probe(data)
+    except (struct.error, IndexError):
+        return None
+
+
+def _probe(data: bytes) -> Header | None:
+    if data[:8] == b"\x89PNG\r\n\x1a\n":
+        return Header("png", *struct.unpack(">II", data[16:24]), _png_orientation(data))
+    if data[:3] == b"\xff\xd8\xff":
+        return _jpeg(data)
+    if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
+        return _webp(data)
+    if data[:4] in (b"II*\0", b"MM\0*"):
+        tags = _tiff_tags(data)
+        return Header("tiff", tags.get(256, 0), tags.get(257, 0), _valid(tags.get(274, 1)))
+    if data[:2] == b"BM" and len(data) > 26:
+        width, height = struct.unpack("<ii", data[18:26])
+        return Header("bmp", abs(width), abs(height))
+    if data[:6] in (b"GIF87a", b"GIF89a"):
+        return Header("gif", *struct.unpack("<HH", data[6:10]))
+    if data[4:8] == b"ftyp" and data[8:12] in (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1"):
+        return Header("heic")
+    if data[:5] == b"%PDF-":
+        return Header("pdf")
+    return None
+
+
+def _valid(orientation: int) -> int:
+    return orientation if 1 <= orientation <= 8 else 1
+
+
+def _tiff_tags(data: bytes) -> dict[int, int]:
+    """The first directory's tags that hold one short or long (TIFF 6.0, section 2)."""
+    order = "<" if data[:2] == b"II" else ">"
+    (at,) = struct.unpack_from(order + "I", data, 4)
+    (count,) = struct.unpack_from(order + "H", data, at)
+    tags = {}
+    for k in range(count):
+        tag, kind, n = struct.unpack_from(order + "HHI", data, at + 2 + 12 * k)
+        if n == 1 and kind in (3, 4):
+            tags[tag] = struct.unpack_from(order + ("H" if kind == 3 else "I"), data, at + 10 + 12 * k)[0]
+    return tags
+
+
+def _exif_orientation(exif: bytes) -> int:
+    try:
+        return _valid(_tiff_tags(exif).get(274, 1))
+    except (struct.error, IndexError):
+        return 1
+
+
+def _png_orientation(data: bytes) -> int:
+    at = 8
+    while at + 8 <= len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        if kind == b"eXIf":
+            return _exif_orientation(data[at + 8 : at + 8 + size])
+        if kind == b"IDAT":
+            break
+        at += 12 + size
+    return 1
+
+
+def _jpeg(data: bytes) -> Header | None:
+    at, orientation = 2, 1
+    while True:
+        while data[at] == 0xFF and data[at + 1] == 0xFF:  # fill bytes
+            at += 1
+        marker, size = struct.unpack_from(">xBH", data, at)
+        if data[at] != 0xFF:
+            return None
+        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):  # start of frame
+            height, width = struct.unpack_from(">HH", data, at + 5)
+            return Header("jpeg", width, height, orientation)
+        if marker == 0xE1 and data[at + 4 : at + 10] == b"Exif\0\0":
+            orientation = _exif_orientation(data[at + 10 : at + 2 + size])
+        at += 2 + size
+
+
+def _webp(data: bytes) -> Header | None:
+    kind = data[12:16]
+    if kind == b"VP8X":
+        width = 1 + int.from_bytes(data[24:27], "little")
+        height = 1 + int.from_bytes(data[27:30], "little")
+        return Header("webp", width, height, _webp_orientation(data))
+    if kind == b"VP8L":
+        (bits,) = struct.unpack_from("<I", data, 21)
+        return Header("webp", 1 + (bits & 0x3FFF), 1 + (bits >> 14 & 0x3FFF))
+    if kind == b"VP8 ":
+        width, height = struct.unpack_from("<HH", data, 26)
+        return Header("webp", width & 0x3FFF, height & 0x3FFF)
+    return None
+
+
+def _webp_orientation(data: bytes) -> int:
+    at = 12
+    while at + 8 <= len(data):
+        kind, size = struct.unpack_from("<4sI", data, at)
+        if kind == b"EXIF":
+            exif = data[at + 8 : at + 8 + size]
+            return _exif_orientation(exif.removeprefix(b"Exif\0\0"))
+        at += 8 + size + (size & 1)
+    return 1
