@@ -1,0 +1,91 @@
+"""The command line's own types: numbers within bounds, sizes, vectors; errors in the style of all others."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from collections.abc import Callable, Sequence
+from typing import Any, NoReturn
+
+__all__ = ["Parser", "UsageError", "number", "picture_size", "vector"]
+
+MAX_SIDE = 7680  # 8K; beyond it players and H.264 levels give up
+
+
+class UsageError(Exception):
+    """The command line asks for what cannot be done."""
+
+    def __init__(self, problem: str, hint: str = "") -> None:
+        super().__init__(problem)
+        self.hint = hint
+
+
+class Parser(argparse.ArgumentParser):
+    """An ArgumentParser that raises UsageError and leaves its text's line breaks alone."""
+
+    def __init__(self, **options: Any) -> None:
+        options.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        super().__init__(allow_abbrev=False, **options)
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(re.sub(r"^argument ", "", message), f"`{self.prog} --help` lists the options")
+
+    class Flag(argparse.Action):
+        """An option without a value that prints a line and ends the program."""
+
+        def __init__(self, option_strings: Sequence[str], dest: str) -> None:
+            super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help="print the version")
+
+        def announce(self) -> str:
+            raise NotImplementedError
+
+        def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+            print(self.announce())
+            parser.exit(0)
+
+
+def number(above: float, at_most: float) -> Callable[[str], float]:
+    """A type of argument: a finite number in (above, at_most]."""
+
+    def parse(text: str) -> float:
+        value = _float(text)
+        if value <= above:
+            raise argparse.ArgumentTypeError(f"{text} is not greater than {above:g}")
+        if value > at_most:
+            raise argparse.ArgumentTypeError(f"{text} is more than {at_most:g}")
+        return value
+
+    return parse
+
+
+def picture_size(text: str) -> tuple[int, int]:
+    """``1280x720``: even, because H.264 keeps one colour for every 2x2 pixels."""
+    found = re.fullmatch(r"(\d{1,9})[x×](\d{1,9})", text)
+    if not found:
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, as in 1280x720")
+    width, height = int(found[1]), int(found[2])
+    for side in (width, height):
+        if not 64 <= side <= MAX_SIDE:
+            raise argparse.ArgumentTypeError(f"{side} is not between 64 and {MAX_SIDE}")
+        if side % 2:
+            raise argparse.ArgumentTypeError(f"{side} is odd; video needs an even width and height")
+    return width, height
+
+
+def vector(text: str) -> tuple[float, float]:
+    """``0,-9.81``."""
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is not X,Y, as in 0,-9.81")
+    return _float(parts[0]), _float(parts[1])
+
+
+def _float(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text} is not a finite number")
+    return value

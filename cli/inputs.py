@@ -1,0 +1,78 @@
+"""Reads an INPUT of the command line: strokes, a picture or a scene, told by content."""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from cli.arguments import UsageError
+from sim.scene import MAX_BYTES, InputError, Scene
+
+if TYPE_CHECKING:
+    from sketch.recognize import Recognition
+
+__all__ = ["Loaded", "load", "read", "recognize_bytes"]
+
+STDIN = "-"
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """An input as a scene, and how it was recognized where it was ink."""
+
+    scene: Scene
+    recognition: Recognition | None = None
+
+
+def read(source: str) -> bytes:
+    """The bytes of a file or of standard input. Raises InputError for what cannot be read."""
+    if source == STDIN:
+        return _check_size(sys.stdin.buffer.read(MAX_BYTES + 1), source)
+    try:
+        with open(source, "rb") as f:
+            return _check_size(f.read(MAX_BYTES + 1), source)
+    except FileNotFoundError:
+        raise InputError(source, "there is no such file") from None
+    except IsADirectoryError:
+        raise InputError(source, "this is a folder, not a file") from None
+    except OSError as e:
+        raise InputError(source, (e.strerror or str(e)).lower()) from None
+
+
+def _check_size(data: bytes, source: str) -> bytes:
+    if len(data) > MAX_BYTES:
+        raise InputError("" if source == STDIN else source, f"more than {MAX_BYTES >> 20} MB")
+    return data
+
+
+def load(source: str, scale: float | None = None) -> Loaded:
+    """The scene that `source` holds or shows; `scale` is the ink's pixels per metre."""
+    data = read(source)
+    if is_scene(data):
+        if scale is not None:
+            raise UsageError(
+                f"--scale: {source} is a scene, which is in metres already",
+                "--scale is for strokes and pictures",
+            )
+        return Loaded(Scene.from_json(data))
+    recognition = recognize_bytes(data, scale)
+    return Loaded(recognition.scene, recognition)
+
+
+def is_scene(data: bytes) -> bool:
+    """Whether this is scene JSON rather than ink."""
+    from sketch.formats import kind_of
+
+    return kind_of(data) == "scene"
+
+
+def recognize_bytes(data: bytes, scale: float | None = None) -> Recognition:
+    """Read ink and understand it."""
+    from sketch import load_sketch, recognize
+
+    sketch = load_sketch(data)
+    if scale is not None:
+        sketch = dataclasses.replace(sketch, pixels_per_metre=scale)
+    return recognize(sketch)

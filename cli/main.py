@@ -1,0 +1,121 @@
+"""Entry point: parses the command line, runs a command, reports failures in one line and an exit status."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from typing import NoReturn
+
+from cli.arguments import Parser, UsageError
+from cli.commands import bench, recognize, simulate
+
+__all__ = ["main"]
+
+DONE, FAILED, USAGE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 3, 130
+
+EPILOG = """\
+examples:
+  sketchsim simulate cart.json                     draw cart.mp4, ten seconds of it
+  sketchsim simulate photo.jpg -o run.mp4 -o run.csv --duration 5
+  sketchsim recognize cart.json -o scene.json --overlay seen.png
+  sketchsim recognize cart.json | sketchsim simulate - -o cart.mp4
+
+exit status: 0 done, 1 something inside failed, 2 wrong usage, 3 bad input
+"""
+
+
+def build_parser() -> Parser:
+    parser = Parser(prog="sketchsim", description="Draw a machine, watch it run.", epilog=EPILOG)
+    parser.add_argument("--version", action=_PrintVersion)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for command in (recognize, simulate, bench):
+        command.add_to(commands)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line `argv` (of the process by default) and return the exit status."""
+    arguments = _join_negative_vectors(sys.argv[1:] if argv is None else argv)
+    restore = _terminate_as_interrupt()
+    try:
+        options = build_parser().parse_args(arguments)
+        status: int = options.run(options)
+        sys.stdout.flush()
+        return status
+    except SystemExit as e:  # --help and --version
+        return e.code if isinstance(e.code, int) else FAILED
+    except UsageError as e:
+        return _report(USAGE, str(e), e.hint)
+    except KeyboardInterrupt:
+        return _report(INTERRUPTED, "interrupted; no output was written")
+    except BrokenPipeError:
+        # Whoever read standard output is gone; Python would complain again on closing it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _report(FAILED, "standard output was closed before all was written")
+    except Exception as e:
+        return _report_exception(e)
+    finally:
+        restore()
+
+
+def _report(status: int, problem: str, hint: str = "") -> int:
+    print(f"error: {problem}", file=sys.stderr)
+    if hint:
+        print(f"hint: {hint}", file=sys.stderr)
+    return status
+
+
+def _report_exception(e: Exception) -> int:
+    from sim.scene import InputError
+
+    if isinstance(e, InputError):
+        return _report(BAD_INPUT, str(e), e.hint)
+    if os.environ.get("SKETCHSIM_TRACEBACK"):
+        raise e
+    if isinstance(e, OSError) and e.strerror:
+        where = f"{e.filename}: " if e.filename else ""
+        return _report(FAILED, f"{where}{e.strerror[:1].lower()}{e.strerror[1:]}")
+    return _report(
+        FAILED,
+        f"something inside failed: {type(e).__name__}: {e}",
+        "set SKETCHSIM_TRACEBACK=1 to see where, and please report it",
+    )
+
+
+def _join_negative_vectors(argv: Sequence[str]) -> list[str]:
+    """``--gravity -1,-9`` as ``--gravity=-1,-9``: argparse would take the vector for an option."""
+    joined: list[str] = []
+    for argument in argv:
+        if joined and joined[-1] == "--gravity" and re.match(r"-[\d.]", argument):
+            joined[-1] += f"={argument}"
+        else:
+            joined.append(argument)
+    return joined
+
+
+def _terminate_as_interrupt() -> Callable[[], object]:
+    """Let SIGTERM unwind like Ctrl-C, so that nothing half-written stays behind; returns how to undo it."""
+    if threading.current_thread() is not threading.main_thread():
+        return lambda: None
+
+    def interrupt(number: int, frame: object) -> NoReturn:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    return lambda: signal.signal(signal.SIGTERM, before)
+
+
+class _PrintVersion(Parser.Flag):
+    """Looks the version up only when asked: importlib.metadata takes longer than the rest of the parser."""
+
+    def announce(self) -> str:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            return f"sketchsim {version('sketchsim')}"
+        except PackageNotFoundError:
+            return "sketchsim, running from its source folder"

@@ -1,0 +1,106 @@
+"""Files that appear whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from types import TracebackType
+
+from cli.arguments import UsageError
+
+__all__ = ["STDOUT", "Outputs", "check_outputs", "ending"]
+
+STDOUT = "-"
+
+
+def ending(target: str) -> str:
+    """What is to be written: ``.mp4``, ``.json``, ...; standard output takes JSON."""
+    return ".json" if target == STDOUT else Path(target).suffix.lower()
+
+
+def check_outputs(targets: Iterable[str], endings: Iterable[str], inputs: Iterable[str] = ()) -> None:
+    """Raise UsageError for what could not be written, before any work is done."""
+    known = sorted(endings)
+    seen: set[str] = set()
+    sources = {os.path.realpath(name) for name in inputs if name != STDOUT}
+    for target in targets:
+        if ending(target) not in known:
+            what = f"{ending(target)!r} is not a known ending" if ending(target) else "no ending"
+            raise UsageError(f"-o {target}: {what}", "the ending says what is written: " + " ".join(known))
+        path = target if target == STDOUT else os.path.realpath(target)
+        if path in seen:
+            raise UsageError(f"-o {target}: given twice")
+        seen.add(path)
+        if target != STDOUT:
+            _check_path(target, path, sources)
+
+
+def _check_path(target: str, path: str, sources: set[str]) -> None:
+    folder = os.path.dirname(path)
+    if path in sources:
+        raise UsageError(f"-o {target}: this is the input itself")
+    if os.path.isdir(path):
+        raise UsageError(f"-o {target}: this is a folder")
+    if not os.path.isdir(folder):
+        raise UsageError(f"-o {target}: there is no folder {os.path.dirname(target)}", "make it first")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise UsageError(f"-o {target}: the folder {os.path.dirname(target) or '.'} cannot be written to")
+
+
+class Outputs:
+    """Several files as one deed: written beside their targets and renamed together at the end.
+
+    Where anything fails on the way nothing is renamed, and what stood there before stays.
+    """
+
+    def __init__(self) -> None:
+        self._beside: list[tuple[str, str]] = []
+        self._stdout: list[bytes] = []
+
+    def __enter__(self) -> Outputs:
+        return self
+
+    def stage(self, target: str) -> str:
+        """A path to write `target`'s content to; the same folder, so that renaming cannot fail half-way."""
+        path = os.path.realpath(target)
+        folder, name = os.path.split(path)
+        fd, beside = tempfile.mkstemp(dir=folder, prefix=f".{name}.", suffix=Path(name).suffix)
+        os.close(fd)
+        self._beside.append((beside, path))
+        return beside
+
+    def write(self, target: str, content: bytes) -> None:
+        if target == STDOUT:
+            self._stdout.append(content)
+        else:
+            Path(self.stage(target)).write_bytes(content)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, e: BaseException | None, tb: TracebackType | None
+    ) -> None:
+        try:
+            if kind is None:
+                for beside, path in self._beside:
+                    os.chmod(beside, _mode(path))
+                for beside, path in self._beside:
+                    os.replace(beside, path)
+                for content in self._stdout:
+                    sys.stdout.buffer.write(content)
+                sys.stdout.flush()
+        finally:
+            for beside, _ in self._beside:
+                with contextlib.suppress(FileNotFoundError):
+                    os.unlink(beside)
+
+
+def _mode(path: str) -> int:
+    """The permissions of the file that is replaced, or those that a new file would have."""
+    with contextlib.suppress(FileNotFoundError):
+        return os.stat(path).st_mode & 0o777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
