@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
+from sketch.formats import load_sketch
 from sketch.ink import Sketch, Stroke
 from sketch.recognize import Reading, Recognition, recognize
 
-__all__ = ["Reading", "Recognition", "Sketch", "Stroke", "recognize"]
+__all__ = ["Reading", "Recognition", "Sketch", "Stroke", "load_sketch", "recognize"]

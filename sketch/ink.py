@@ -23,6 +23,11 @@ class Stroke:
     points: NDArray[np.float64]
     times: NDArray[np.float64] | None = None
 
+    @property
+    def has_length(self) -> bool:
+        """Whether the pen moved at all."""
+        return len(self.points) > 1 and bool((self.points != self.points[0]).any())
+
 
 @dataclass(frozen=True, eq=False)
 class Sketch:

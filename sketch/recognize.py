@@ -1,36 +1,30 @@
-"""Ink → scene: readings of groups of strokes, scored, and the set of them that explains all the ink best."""
+"""Ink → scene: readings of groups of strokes, scored, and the set of them that explains all the ink best.
+
+What is optimized: the length of a description of the page.  Every reading of a group of ink says what the ink is in
+fewer nats than saying the ink itself, point by point; that saving is its gain.  The answer is the set of readings, each
+piece of ink in at most one, with the greatest total gain: no other set describes the page in fewer nats.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.scene import Scene
+from sketch import group, primitives
 from sketch.ink import Sketch
+from sketch.interpret import inside, interpret
+from sketch.pieces import Piece, cut_into_pieces
+from sketch.primitives import Fitted
+from sketch.reading import Reading
+from sketch.search import best_packing
 
 __all__ = ["Reading", "Recognition", "recognize"]
 
-
-@dataclass(frozen=True, eq=False)
-class Reading:
-    """What some ink was taken for.
-
-    Attributes:
-        kind: "circle", "rectangle", "polygon", "bar", "anchor", "pivot", "gravity" or "unread".
-        strokes: indices of the sketch's strokes that it explains.
-        score: probability of this reading among those of the same ink, 0 to 1.
-        outline: [pixels], y down, shape (n, 2); closed for bodies and pivots.  An anchor's is its two bars
-            end to end (4 points), the arrow's is tail and head (2 points).
-        alternatives: other kinds that the same ink was scored as, with their scores, best first.
-    """
-
-    kind: str
-    strokes: tuple[int, ...]
-    score: float
-    outline: NDArray[np.float64]
-    alternatives: list[tuple[str, float]] = field(default_factory=list)
+ANCHORS = 15.0  # nats that an X is likelier over a body than elsewhere
+KINDS = {"ellipse": "polygon", "cross": "anchor", "arrow": "gravity"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,5 +36,87 @@ class Recognition:
     readings: list[Reading]
 
 
-def recognize(sketch: Sketch) -> Recognition:
-    raise NotImplementedError
+def recognize(
+    sketch: Sketch, *, scale: float | None = None, gravity: tuple[float, float] | None = None
+) -> Recognition:
+    """Read a sketch.
+
+    Args:
+        sketch: the ink.
+        scale: [pixels per metre], overriding the sketch's own.
+        gravity: [m/s²], y up, overriding the arrow's.
+    """
+    pieces = cut_into_pieces(sketch)
+    candidates = _candidates(pieces)
+    free = [primitives.unread(p) for p in pieces]
+    gains = [sum(free[i] for i in c.pieces) - c.cost for c in candidates]
+    _context(candidates, gains)
+    live = [k for k, gain in enumerate(gains) if gain > 0]
+    chosen = best_packing([frozenset(candidates[k].pieces) for k in live], [gains[k] for k in live])
+    readings = [_reading(live[k], candidates, gains, pieces) for k in chosen]
+    readings.sort(key=lambda r: r.strokes)
+    read = {s for r in readings for s in r.strokes}
+    for i, stroke in enumerate(sketch.strokes):
+        if i not in read:
+            readings.append(Reading("unread", (i,), 0.0, stroke.points))
+    scene, readings = interpret(sketch, readings, scale, gravity)
+    return Recognition(sketch, scene, readings)
+
+
+def _candidates(pieces: list[Piece]) -> list[Fitted]:
+    least_axis = 3.0
+    out: list[Fitted] = []
+    complete = set()
+    for i, piece in enumerate(pieces):
+        if piece.gap < 0.2 * piece.length:
+            fits = primitives.closed(pieces, [(i, False)], least_axis)
+            if min(f.cost for f in fits) < 0.6 * primitives.unread(piece):
+                complete.add(i)
+    for chain in group.closing_chains(pieces, complete):
+        out += primitives.closed(pieces, chain, least_axis)
+    for i, piece in enumerate(pieces):
+        line = primitives.bar(i, piece)
+        if line:
+            out.append(line)
+    for names in group.crossing_pairs(pieces):
+        found = primitives.cross(pieces, names)
+        if found:
+            out.append(found)
+    for names, tail, tip in group.arrow_groups(pieces):
+        found = primitives.arrow(pieces, names, np.asarray(tail), np.asarray(tip))
+        if found:
+            out.append(found)
+    return out
+
+
+def _context(candidates: list[Fitted], gains: list[float]) -> None:
+    """What stands around a reading, told last: it decides between readings that are nearly equal."""
+    bodies = [
+        (c, gains[k])
+        for k, c in enumerate(candidates)
+        if gains[k] > 0 and c.kind in ("circle", "ellipse", "rectangle", "polygon")
+    ]
+    for k, c in enumerate(candidates):
+        if c.kind == "cross":
+            centre = c.outline.mean(axis=0)
+            over = any(not set(b.pieces) & set(c.pieces) and inside(centre, b.outline) for b, _ in bodies)
+            gains[k] += ANCHORS if over else -ANCHORS
+
+
+def _reading(k: int, candidates: list[Fitted], gains: list[float], pieces: list[Piece]) -> Reading:
+    """The chosen candidate with the others of the same ink, as probabilities."""
+    same = {k: gains[k]}
+    for j, c in enumerate(candidates):
+        if c.pieces == candidates[k].pieces:
+            same[j] = gains[j]
+    top = max(same.values())
+    weight: dict[str, float] = {}
+    for j, gain in same.items():
+        kind = KINDS.get(candidates[j].kind, candidates[j].kind)
+        weight[kind] = weight.get(kind, 0.0) + math.exp(max(gain - top, -50.0))
+    total = sum(weight.values())
+    c = candidates[k]
+    kind = KINDS.get(c.kind, c.kind)
+    others = sorted(((n, w / total) for n, w in weight.items() if n != kind), key=lambda t: -t[1])
+    strokes = tuple(sorted({pieces[i].stroke for i in c.pieces}))
+    return Reading(kind, strokes, weight[kind] / total, c.outline, others)

@@ -1,0 +1,76 @@
+"""Readers of sketches, one format a file; the format is told by content, never by a file's name."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from sim.scene import InputError
+from sketch.ink import Sketch
+
+__all__ = ["kind_of", "load_sketch"]
+
+MAX_PICTURE_BYTES = 64 << 20
+
+# The first bytes of each picture format, and where they stand.
+_PICTURES = [
+    (0, b"\x89PNG\r\n\x1a\n"),
+    (0, b"\xff\xd8\xff"),  # JPEG
+    (0, b"GIF8"),
+    (0, b"BM"),
+    (0, b"II*\0"),  # TIFF
+    (0, b"MM\0*"),
+    (8, b"WEBP"),
+    (4, b"ftyphei"),  # HEIC
+    (4, b"ftypmif1"),
+    (4, b"ftypavif"),
+    (0, b"%PDF"),
+]
+
+
+def kind_of(data: bytes) -> str:
+    """What some input is, by its content: "strokes", "scene", "picture", or "unknown" (text that is neither).
+
+    JSON is told by its keys without parsing it: a scene has "bodies", a sketch "strokes"; a file that has both
+    says what it is in "format".
+    """
+    if any(data[at : at + len(magic)] == magic for at, magic in _PICTURES):
+        return "picture"
+    head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if head[:1] not in (b"{", b"["):
+        return "unknown"
+    if b"sketchsim-scene" in head:
+        return "scene"
+    if b"sketchsim-strokes" in head:
+        return "strokes"
+    bodies, strokes = data.find(b'"bodies"'), data.find(b'"strokes"')
+    if bodies >= 0 and (strokes < 0 or bodies < strokes):
+        return "scene"
+    return "strokes"
+
+
+def load_sketch(source: str | os.PathLike[str] | bytes) -> Sketch:
+    """Read a sketch from a file or from its bytes: stroke JSON, or a picture of paper.
+
+    Raises InputError, which names the bad element, for what is no sketch; OSError for a file that cannot be read.
+    """
+    from sketch.formats import strokes
+
+    if isinstance(source, bytes):
+        data = source
+    else:
+        path = Path(source)
+        size = path.stat().st_size
+        if size > MAX_PICTURE_BYTES:  # said before reading: a huge file costs neither time nor memory
+            raise InputError("", f"{size / 1e6:.0f} MB; at most {MAX_PICTURE_BYTES / 1e6:.0f} MB are taken")
+        data = path.read_bytes()
+    if not data.strip():
+        raise InputError("", "the input is empty")
+    kind = kind_of(data)
+    if kind == "picture":
+        from sketch.scan import read_picture
+
+        return read_picture(data)
+    if kind == "scene":
+        raise InputError("", "this is a scene, not a sketch", "a scene needs no recognition: simulate it")
+    return strokes.read(data)

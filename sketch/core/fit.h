@@ -1,0 +1,45 @@
+/* Fits of drawn outlines and lines. Plain C11, no allocation, no globals; all lengths in the caller's pixels. */
+#ifndef SKETCH_FIT_H
+#define SKETCH_FIT_H
+
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define INK_API __declspec(dllexport)
+#else
+#define INK_API __attribute__((visibility("default")))
+#endif
+
+enum {
+    SAMPLES = 64, /* of a piece of ink: a rectangle's side still has a dozen, and a fit takes tens of microseconds */
+    SIDES = 14    /* the most sides that are told apart; beyond, an outline is round or free */
+};
+
+/* All segmentations of one row of samples: sums over any run of them in constant time. */
+typedef struct {
+    int n;
+    double x[2 * SAMPLES], y[2 * SAMPLES]; /* the samples twice over, so that a run may pass the end */
+    double sx[2 * SAMPLES + 1], sy[2 * SAMPLES + 1];
+    double sxx[2 * SAMPLES + 1], sxy[2 * SAMPLES + 1], syy[2 * SAMPLES + 1];
+    double cost[SAMPLES][SAMPLES + 1]; /* cost[i][m]: squared distances of samples i .. i+m-1 from their best line */
+} Runs;
+
+typedef struct {
+    double x, y, dx, dy; /* a point of the line, and its unit direction in the order of the samples */
+} Line;
+
+void runs_prepare(Runs *r);
+Line runs_line(const Runs *r, int first, int count);
+
+/* Best splits of samples start .. start+n-1 into 1 .. SIDES runs: cut[k] holds the k+1 bounds of the best k. */
+void runs_split(const Runs *r, int start, int kmax, double total[SIDES + 1], int cut[SIDES + 1][SIDES + 1]);
+
+/* Where two neighbouring sides meet, given the last sample of one and the first of the next. */
+void corner(const Line *a, const Line *b, const double end[2], const double begin[2], double out[2]);
+
+/* Equal steps of arc length along the inked parts of a chain (not along the gaps between the parts). */
+double sample_parts(const double *xy, const int32_t *part_end, int parts, double *x, double *y, int n);
+
+double segment_distance2(double px, double py, const double a[2], const double b[2]);
+
+#endif

@@ -1,0 +1,168 @@
+/* A closed outline's readings: round, or a polygon of 3 .. SIDES sides, fitted to one chain of ink.
+ *
+ * Both are judged in the ink's normal frame, where its second moments are those of the unit circle: there every ellipse is
+ * round, every triangle equilateral and every parallelogram a square, so that a long thin box has as many samples on its
+ * short sides as on its long ones, and "how far off" means the same for all. */
+#include "fit.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct {
+    double mean[2];
+    double to[4];   /* normal = to * (pixel - mean), row major */
+    double back[4]; /* its inverse */
+} Frame;
+
+/* Second moments of the chain taken as a closed curve (the gaps bridged), so that a missing piece moves them little. */
+static Frame normal_frame(const double *xy, int n, double least_axis)
+{
+    double w = 0, m[2] = {0, 0}, s[3] = {0, 0, 0};
+    for (int pass = 0; pass < 2; pass++) { /* the mean first: moments about it keep their digits */
+        double a[2] = {0, 0};
+        w = s[0] = s[1] = s[2] = 0;
+        for (int i = 0, j = n - 1; i < n; j = i++) {
+            double dx = xy[2 * i] - xy[2 * j], dy = xy[2 * i + 1] - xy[2 * j + 1], l = hypot(dx, dy);
+            double cx = 0.5 * (xy[2 * i] + xy[2 * j]) - m[0], cy = 0.5 * (xy[2 * i + 1] + xy[2 * j + 1]) - m[1];
+            w += l;
+            a[0] += l * cx;
+            a[1] += l * cy;
+            s[0] += l * (cx * cx + dx * dx / 12);
+            s[1] += l * (cx * cy + dx * dy / 12);
+            s[2] += l * (cy * cy + dy * dy / 12);
+        }
+        if (w <= 0)
+            w = 1;
+        if (pass == 0) {
+            m[0] = a[0] / w;
+            m[1] = a[1] / w;
+        }
+    }
+    double half = 0.5 * (s[0] - s[2]) / w, mid = 0.5 * (s[0] + s[2]) / w, off = s[1] / w;
+    double spread = sqrt(half * half + off * off), angle = 0.5 * atan2(off, half);
+    double c = cos(angle), sn = sin(angle);
+    double p = sqrt(2 * fmax(mid + spread, 0)), q = sqrt(2 * fmax(mid - spread, 0)); /* radii of the like ellipse */
+    p = fmax(p, least_axis);
+    q = fmax(q, least_axis);
+    Frame f = {{m[0], m[1]}, {c / p, sn / p, -sn / q, c / q}, {c * p, -sn * q, sn * p, c * q}};
+    return f;
+}
+
+/* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e: near the unit circle the algebraic distance is the geometric
+ * one to first order. Returns the mean squared distance (Sampson's, capped), and the conic. */
+static double fit_round(const double *x, const double *y, int n, double cap2, double conic[5])
+{
+    double a[5][6];
+    memset(a, 0, sizeof a);
+    for (int i = 0; i < n; i++) {
+        double row[6] = {x[i] * x[i] - y[i] * y[i], 2 * x[i] * y[i], x[i], y[i], 1, x[i] * x[i] + y[i] * y[i]};
+        for (int p = 0; p < 5; p++)
+            for (int q = 0; q < 6; q++)
+                a[p][q] += row[p] * row[q];
+    }
+    for (int p = 0; p < 5; p++)
+        a[p][p] += 1e-9 * n;
+    for (int p = 0; p < 5; p++) { /* positive definite: no pivoting needed */
+        for (int q = p + 1; q < 5; q++) {
+            double f = a[q][p] / a[p][p];
+            for (int t = p; t < 6; t++)
+                a[q][t] -= f * a[p][t];
+        }
+    }
+    for (int p = 4; p >= 0; p--) {
+        double v = a[p][5];
+        for (int q = p + 1; q < 5; q++)
+            v -= a[p][q] * conic[q];
+        conic[p] = v / a[p][p];
+    }
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        double u = x[i] * x[i] + y[i] * y[i] - conic[0] * (x[i] * x[i] - y[i] * y[i]) - conic[1] * 2 * x[i] * y[i] -
+                   conic[2] * x[i] - conic[3] * y[i] - conic[4];
+        double gx = 2 * x[i] * (1 - conic[0]) - 2 * conic[1] * y[i] - conic[2];
+        double gy = 2 * y[i] * (1 + conic[0]) - 2 * conic[1] * x[i] - conic[3];
+        sum += fmin(u * u / fmax(gx * gx + gy * gy, 1e-6), cap2);
+    }
+    return sum / n;
+}
+
+/* Corners of the k-gon whose sides are the runs bounded by `cut` (counted from `start`), and its mean squared distance.
+ * Ink that overshoots a corner lies on its side's line: it pays for the length beyond at a quarter. */
+static double fit_polygon(const Runs *r, int start, const int *cut, int k, double cap2, double *vertices)
+{
+    Line side[SIDES];
+    for (int q = 0; q < k; q++)
+        side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q]);
+    for (int q = 0; q < k; q++) { /* vertex q is where side q begins */
+        int before = (q + k - 1) % k;
+        int b = (start + cut[q]) % r->n, e = (b + r->n - 1) % r->n;
+        double end[2] = {r->x[e], r->y[e]}, begin[2] = {r->x[b], r->y[b]};
+        corner(&side[before], &side[q], end, begin, vertices + 2 * q);
+    }
+    double sum = 0;
+    for (int q = 0; q < k; q++) {
+        const double *a = vertices + 2 * q, *b = vertices + 2 * ((q + 1) % k);
+        double dx = b[0] - a[0], dy = b[1] - a[1], l = hypot(dx, dy);
+        for (int i = cut[q]; i < cut[q + 1]; i++) {
+            double px = r->x[(start + i) % r->n] - a[0], py = r->y[(start + i) % r->n] - a[1];
+            double t = l > 0 ? (px * dx + py * dy) / l : 0, h = l > 0 ? (px * dy - py * dx) / l : hypot(px, py);
+            double over = t < 0 ? -t : t > l ? t - l : 0;
+            sum += fmin(h * h + 0.0625 * over * over, cap2);
+        }
+    }
+    return sum / r->n;
+}
+
+/* Fit the readings of a closed chain of ink.
+ *
+ * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
+ * least_axis: the frame's radii are at least this long [pixels]: below, the pen's own width is what one sees.
+ * cap: distances count up to this, in the frame.
+ * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; conic: 5 and its mean squared
+ * distance; residual[k]: mean squared distance of the best k-gon; vertices[k][SIDES][2] in the frame. */
+INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap, double *frame,
+                        double *length, double *conic, double *residual, double *vertices, double *scratch)
+{
+    int n = part_end[parts - 1];
+    Frame f = normal_frame(xy, n, least_axis);
+    memcpy(frame, f.mean, sizeof f.mean);
+    memcpy(frame + 2, f.to, sizeof f.to);
+    memcpy(frame + 6, f.back, sizeof f.back);
+    double *z = scratch; /* (n, 2): the chain in the frame */
+    for (int i = 0; i < n; i++) {
+        double dx = xy[2 * i] - f.mean[0], dy = xy[2 * i + 1] - f.mean[1];
+        z[2 * i] = f.to[0] * dx + f.to[1] * dy;
+        z[2 * i + 1] = f.to[2] * dx + f.to[3] * dy;
+    }
+    length[1] = 0;
+    for (int p = 0, first = 0; p < parts; first = part_end[p++]) {
+        int last = part_end[p] - 1, next = p + 1 < parts ? part_end[p] : 0;
+        (void)first;
+        length[1] += hypot(z[2 * last] - z[2 * next], z[2 * last + 1] - z[2 * next + 1]);
+    }
+    Runs r;
+    r.n = SAMPLES;
+    length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
+    runs_prepare(&r);
+    double cap2 = cap * cap;
+    conic[5] = fit_round(r.x, r.y, SAMPLES, cap2, conic);
+
+    for (int k = 0; k <= SIDES; k++)
+        residual[k] = INFINITY;
+    double total[SIDES + 1], polygon[2 * SIDES];
+    int cut[SIDES + 1][SIDES + 1], start = 0;
+    /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin again
+     * from corners found that way. */
+    for (int round = 0; round < 3; round++) {
+        runs_split(&r, start, SIDES, total, cut);
+        for (int k = 3; k <= SIDES; k++) {
+            double s = fit_polygon(&r, start, cut[k], k, cap2, polygon);
+            if (s < residual[k]) {
+                residual[k] = s;
+                memcpy(vertices + 2 * SIDES * k, polygon, 2 * k * sizeof *polygon);
+            }
+        }
+        int k = round == 0 ? 5 : 4, q = round == 0 ? 2 : 2;
+        start = (start + cut[k][q]) % SAMPLES;
+    }
+}

@@ -1,1 +1,0 @@
-int ink_stub(void) { return 0; }

@@ -1,0 +1,101 @@
+"""Binding of the C fits (``sketch/core``): plain arrays in, plain arrays out."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["SIDES", "ClosedFit", "OpenFit", "fit_closed", "fit_open"]
+
+Array = NDArray[np.float64]
+
+SAMPLES, SIDES = 64, 14  # as in core/fit.h
+_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+_lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
+_doubles, _ints = ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int32)
+_lib.ink_closed.argtypes = [
+    ctypes.c_void_p,
+    ctypes.c_void_p,
+    ctypes.c_int,
+    ctypes.c_double,
+    ctypes.c_double,
+] + [ctypes.c_void_p] * 6
+_lib.ink_closed.restype = None
+_lib.ink_open.argtypes = [ctypes.c_void_p, ctypes.c_int32] + [ctypes.c_void_p] * 3
+_lib.ink_open.restype = ctypes.c_double
+
+
+class ClosedFit(NamedTuple):
+    """Readings of a closed chain of ink in its normal frame (see core/outline.c).
+
+    Attributes:
+        mean: the frame's origin [pixels].  back: (2, 2), pixel = mean + back @ normal.
+        ink, gap: lengths of the ink and of the gaps, in the frame.
+        conic: a, b, c, d, e of x² + y² = a(x² - y²) + 2bxy + cx + dy + e.
+        round_residual: mean squared distance from it.
+        residual: of the best k-gon, for k = 0 .. SIDES.
+        corners: in the frame, (SIDES + 1, SIDES, 2).
+    """
+
+    mean: Array
+    back: Array
+    ink: float
+    gap: float
+    conic: Array
+    round_residual: float
+    residual: list[float]
+    corners: Array
+
+    def vertices(self, sides: int) -> Array:
+        """Corners of the best polygon of so many sides [pixels], (sides, 2)."""
+        return np.asarray(self.mean + self.corners[sides, :sides] @ self.back.T)
+
+
+class OpenFit(NamedTuple):
+    """Readings of one stroke as a polyline: see core/polyline.c."""
+
+    length: float
+    samples: Array
+    residual: list[float]
+    corners: Array
+
+    def vertices(self, segments: int) -> Array:
+        return self.corners[segments, : segments + 1]
+
+
+def fit_closed(parts: list[Array], least_axis: float, cap: float) -> ClosedFit:
+    """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
+    xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
+    ends = np.cumsum([len(p) for p in parts], dtype=np.int32)
+    out = np.empty(10 + 2 + 6 + SIDES + 1 + 2 * SIDES * (SIDES + 1) + 2 * len(xy))
+    at = out.ctypes.data
+    offsets = (0, 10, 12, 18, 19 + SIDES, 19 + SIDES + 2 * SIDES * (SIDES + 1))
+    _lib.ink_closed(
+        xy.ctypes.data, ends.ctypes.data, len(ends), least_axis, cap, *(at + 8 * offset for offset in offsets)
+    )
+    return ClosedFit(
+        mean=out[0:2],
+        back=out[6:10].reshape(2, 2),
+        ink=float(out[10]),
+        gap=float(out[11]),
+        conic=out[12:17],
+        round_residual=float(out[17]),
+        residual=out[18 : 19 + SIDES].tolist(),
+        corners=out[offsets[4] : offsets[5]].reshape(SIDES + 1, SIDES, 2),
+    )
+
+
+def fit_open(points: Array) -> OpenFit:
+    """Fit one stroke, (n, 2) in pixels, as polylines of 1 .. SIDES segments."""
+    xy = np.ascontiguousarray(points, dtype=np.float64)
+    samples, residual = np.empty((SAMPLES, 2)), np.empty(SIDES + 1)
+    corners = np.zeros((SIDES + 1, SIDES + 1, 2))
+    length = _lib.ink_open(
+        xy.ctypes.data, len(xy), samples.ctypes.data, residual.ctypes.data, corners.ctypes.data
+    )
+    return OpenFit(length, samples, residual.tolist(), corners)

@@ -1,0 +1,252 @@
+"""The vocabulary: each primitive fitted to a group of ink, with its cost in nats.
+
+Everything is scored on one scale, the length of a description (Rissanen 1978): what it takes to say the primitive's
+parameters, plus what it then takes to say where the ink is, given the primitive.  See scoring in `sketch.recognize`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.kernel import ClosedFit, fit_closed
+from sketch.pieces import Piece
+
+__all__ = ["Fitted", "arrow", "bar", "closed", "cross", "unread"]
+
+Array = NDArray[np.float64]
+
+OBSERVATIONS = 40  # independent observations in an outline's ink: neighbouring points err together
+TREMOR = 0.04  # spread of ink about what was meant, as a share of the radius
+SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius
+PARAMETER = 5.0  # nats to say one parameter to that precision: ln(page / tremor)
+FREE = 3.0  # nats an observation to say ink freely, point by point
+STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
+GAP = 3.0  # nats for each observation that an outline lacks
+CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A primitive fitted to some ink.
+
+    Attributes:
+        kind: "circle", "ellipse", "rectangle", "polygon", "cross", "arrow", "bar" or "unread".
+        pieces: indices of the pieces that it explains.
+        cost: description length [nats].
+        outline: [pixels], as in `sketch.recognize.Reading`.
+        sides: of a polygon, else 0.
+        residual: root mean square distance of the ink [share of the radius].
+    """
+
+    kind: str
+    pieces: tuple[int, ...]
+    cost: float
+    outline: Array
+    sides: int = 0
+    residual: float = 0.0
+
+
+def unread(piece: Piece) -> float:
+    """Cost of ink that means nothing: said point by point."""
+    return STRANGE + FREE * OBSERVATIONS * piece.length / (math.pi * max(piece.extent, 1e-9))
+
+
+def _misfit(mean_square: float, ink: float) -> float:
+    """Nats to say the ink's distances from a primitive; ink: its length in radii."""
+    n = OBSERVATIONS * ink / (2 * math.pi)
+    return 0.5 * n * (math.log1p(mean_square / TREMOR**2) + mean_square / SLOPPY**2)
+
+
+# ---------------------------------------------------------------- closed outlines
+
+
+def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float) -> list[Fitted]:
+    """Readings of pieces that, one after another (index, reversed), go once around: round or with corners."""
+    parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in order]
+    fit = fit_closed(parts, least_axis, CAP)
+    names = tuple(sorted({i for i, _ in order}))
+    gaps = GAP * OBSERVATIONS * fit.gap / (2 * math.pi)
+    out = [_round(fit, names, gaps)]
+    for k in range(3, 13):
+        cost = _misfit(fit.residual[k], fit.ink) + gaps
+        vertices = fit.vertices(k)
+        out.append(
+            Fitted("polygon", names, cost + 2 * k * PARAMETER, vertices, k, math.sqrt(fit.residual[k]))
+        )
+        if k == 4:
+            box, extra = _rectangle(fit, vertices)
+            residual = fit.residual[4] + extra
+            cost = _misfit(residual, fit.ink) + gaps + 5 * PARAMETER
+            out.append(Fitted("rectangle", names, cost, box, 4, math.sqrt(residual)))
+    return out
+
+
+def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float) -> Fitted:
+    a, b, c, d, e = fit.conic.tolist()
+    m = np.array([[1 - a, -b], [-b, 1 + a]])
+    centre = np.linalg.solve(m, np.array([c, d]) / 2)
+    level = e + float(centre @ m @ centre)
+    to = np.linalg.inv(fit.back)
+    shape = to.T @ m @ to / max(level, 1e-9)  # (p - centre)ᵀ shape (p - centre) = 1, in pixels
+    values, axes = np.linalg.eigh(shape)
+    radii = 1 / np.sqrt(np.maximum(values, 1e-12))
+    middle = fit.mean + fit.back @ centre
+    aspect = math.log(radii[0] / radii[1]) if radii[1] > 0 else 9.0
+    cost = _misfit(fit.round_residual, fit.ink) + gaps
+    as_circle = 7 * PARAMETER + 0.5 * (aspect / 0.055) ** 2  # nobody's circles are round
+    as_ellipse = 9 * PARAMETER + 3
+    angles = np.linspace(0, 2 * math.pi, 24, endpoint=False)
+    if as_circle <= as_ellipse:
+        r = math.sqrt(radii[0] * radii[1])
+        ring = middle + r * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        return Fitted("circle", names, cost + as_circle, ring, 0, math.sqrt(fit.round_residual))
+    ring = (
+        middle
+        + np.outer(np.cos(angles) * radii[0], axes[:, 0])
+        + np.outer(np.sin(angles) * radii[1], axes[:, 1])
+    )
+    return Fitted("ellipse", names, cost + as_ellipse, ring, len(angles), math.sqrt(fit.round_residual))
+
+
+def _rectangle(fit: ClosedFit, corners: Array) -> tuple[Array, float]:
+    """The rectangle nearest to a quadrilateral, and the mean squared distance that it adds, in the frame."""
+    sides = np.roll(corners, -1, axis=0) - corners
+    lengths = np.hypot(sides[:, 0], sides[:, 1])
+    angles = np.arctan2(sides[:, 1], sides[:, 0])
+    turn = (
+        math.atan2(float((lengths * np.sin(4 * angles)).sum()), float((lengths * np.cos(4 * angles)).sum()))
+        / 4
+    )
+    u = np.array([math.cos(turn), math.sin(turn)])
+    v = np.array([-u[1], u[0]])
+    mids = corners + sides / 2
+    along = np.abs(sides @ u) > np.abs(sides @ v)  # sides that run along u
+    if along.sum() != 2 or along[0] == along[1]:
+        return corners, 1.0
+    across, up = (mids @ u)[~along], (mids @ v)[along]
+    box = np.array([[across[k], up[j]] for k, j in ((0, 0), (1, 0), (1, 1), (0, 1))]) @ np.stack([u, v])
+    # in the order of the corners that it replaces
+    order = [int(np.argmin(np.hypot(*(box - c).T))) for c in corners]
+    if sorted(order) != [0, 1, 2, 3]:
+        return corners, 1.0
+    box = box[order]
+    to = np.linalg.inv(fit.back)
+    off = (corners - box) @ to.T
+    z = (box - fit.mean) @ to.T
+    edge = np.roll(z, -1, axis=0) - z
+    normal = (
+        np.stack([-edge[:, 1], edge[:, 0]], axis=1)
+        / np.maximum(np.hypot(edge[:, 0], edge[:, 1]), 1e-9)[:, None]
+    )
+    p = (off * normal).sum(axis=1)
+    q = (np.roll(off, -1, axis=0) * normal).sum(axis=1)
+    return box, float(((p * p + p * q + q * q) / 3).mean())
+
+
+# ---------------------------------------------------------------- open lines
+
+
+def bar(index: int, piece: Piece) -> Fitted | None:
+    """An open line or polyline: a thin bar."""
+    if piece.gap < 0.3 * piece.length:
+        return None
+    best = None
+    for k in range(1, 6):
+        radius2 = max(piece.extent / 2, 1e-9) ** 2
+        n = OBSERVATIONS * piece.length / (math.pi * max(piece.extent, 1e-9))
+        cost = 0.5 * n * math.log1p(piece.fit.residual[k] / radius2 / TREMOR**2) + 2 * (k + 1) * PARAMETER + 5
+        if best is None or cost < best.cost:
+            residual = math.sqrt(piece.fit.residual[k] / radius2)
+            best = Fitted("bar", (index,), cost, piece.fit.vertices(k), k, residual)
+    return best
+
+
+def cross(pieces: list[Piece], names: tuple[int, ...]) -> Fitted | None:
+    """An X: two bars that cross near their middles; one stroke has a side that joins them."""
+    joining = 0.0
+    if len(names) == 2:
+        first, second = (pieces[i].fit for i in names)
+        a, b = first.vertices(1)
+        c, d = second.vertices(1)
+        mean_square = (first.residual[1] * first.length + second.residual[1] * second.length) / (
+            first.length + second.length
+        )
+    else:
+        fit = pieces[names[0]].fit
+        v = fit.vertices(3)
+        (a, b), (c, d) = v[:2], v[2:]
+        mean_square, joining = fit.residual[3], float(np.hypot(*(v[2] - v[1])))
+    where = _crossing(a, b, c, d)
+    if where is None:
+        return None
+    t, s = where
+    if not (0.1 < t < 0.9 and 0.1 < s < 0.9):
+        return None
+    p, q = float(np.hypot(*(b - a))), float(np.hypot(*(d - c)))
+    sine = abs((b - a)[0] * (d - c)[1] - (b - a)[1] * (d - c)[0]) / max(p * q, 1e-9)
+    if sine < 0.3 or max(p, q) > 3 * min(p, q):
+        return None
+    radius = (p + q) / 4
+    ink = (p + q + joining) / radius
+    off_centre = ((t - 0.5) ** 2 + (s - 0.5) ** 2) / (2 * 0.15**2) + 0.5 * (math.log(p / q) / 0.3) ** 2
+    cost = 6 * PARAMETER + _misfit(mean_square / radius**2, ink) + off_centre + (PARAMETER if joining else 0)
+    return Fitted("cross", names, cost, np.array([a, b, c, d]), 0, math.sqrt(mean_square) / radius)
+
+
+def _crossing(a: Array, b: Array, c: Array, d: Array) -> tuple[float, float] | None:
+    u, v, w = b - a, d - c, c - a
+    det = float(u[0] * v[1] - u[1] * v[0])
+    if abs(det) < 1e-9:
+        return None
+    return float(w[0] * v[1] - w[1] * v[0]) / det, float(w[0] * u[1] - w[1] * u[0]) / det
+
+
+def arrow(pieces: list[Piece], names: tuple[int, ...], tail: Array, toward: Array) -> Fitted | None:
+    """A shaft from `tail` toward the tip, and a head of two barbs; fitted to all the ink of the pieces."""
+    axis = toward - tail
+    long = float(np.hypot(*axis))
+    if long <= 0:
+        return None
+    u = axis / long
+    q = np.concatenate([pieces[i].fit.samples for i in names]) - tail
+    weight = np.concatenate([np.full(len(pieces[i].fit.samples), pieces[i].length) for i in names])
+    weight /= weight.sum()
+    s, h = q @ u, q @ np.array([-u[1], u[0]])
+    reach = float(s.max())
+    off = np.abs(h) > 0.06 * reach
+    if not off.any() or s[off].min() < 0.2 * reach:
+        return None
+    left, right = int(np.argmax(h)), int(np.argmin(h))
+    if h[left] < 0.07 * reach or h[right] > -0.07 * reach:
+        return None
+    tip = np.array([reach, float(np.median(h[s > 0.97 * reach]))])
+    z = np.stack([s, h], axis=1)
+    distance = np.minimum.reduce(
+        [_from_segment(z, np.zeros(2), tip), _from_segment(z, tip, z[left]), _from_segment(z, tip, z[right])]
+    )
+    radius = reach / 2
+    mean_square = float((weight * np.minimum(distance / radius, CAP) ** 2).sum())
+    barbs = [tip - z[left], tip - z[right]]
+    lengths = [float(np.hypot(*b)) for b in barbs]
+    if min(b[0] for b in barbs) < 0.03 * reach:
+        return None
+    ink = sum(pieces[i].length for i in names) / radius
+    balance = (
+        0.5 * (math.log(lengths[0] / lengths[1]) / 0.35) ** 2
+        + 0.5 * (math.log(sum(lengths) / 2 / reach / 0.4) / 0.4) ** 2
+    )
+    cost = 6 * PARAMETER + _misfit(mean_square, ink) + balance
+    v = np.array([-u[1], u[0]])
+    return Fitted(
+        "arrow", names, cost, np.array([tail, tail + u * tip[0] + v * tip[1]]), 0, math.sqrt(mean_square)
+    )
+
+
+def _from_segment(z: Array, a: Array, b: Array) -> Array:
+    d = b - a
+    t = np.clip((z - a) @ d / max(float(d @ d), 1e-12), 0, 1)
+    return np.asarray(np.hypot(*(z - a - t[:, None] * d).T))

@@ -1,0 +1,30 @@
+"""What some ink was taken for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Reading"]
+
+
+@dataclass(eq=False)
+class Reading:
+    """What some ink was taken for.
+
+    Attributes:
+        kind: "circle", "rectangle", "polygon", "bar", "anchor", "pivot", "gravity" or "unread".
+        strokes: indices of the sketch's strokes that it explains.
+        score: probability of this reading among those of the same ink, 0 to 1.
+        outline: [pixels], y down, shape (n, 2); closed for bodies and pivots.  An anchor's is its two bars
+            end to end (4 points), the arrow's is tail and head (2 points).
+        alternatives: other kinds that the same ink was scored as, with their scores, best first.
+    """
+
+    kind: str
+    strokes: tuple[int, ...]
+    score: float
+    outline: NDArray[np.float64]
+    alternatives: list[tuple[str, float]] = field(default_factory=list)
