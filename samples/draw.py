@@ -334,7 +334,7 @@ def _placed(kind: str, outline: list[Point]) -> dict[str, Any]:
     if kind == "rectangle":
         a, b, c, _ = outline
         size = [round(math.dist(a, b) / SCALE, 4), round(math.dist(b, c) / SCALE, 4)]
-        angle = round(-math.radians(turn_of(a, b)), 4)
+        angle = round(-math.radians(turn_of(a, b)), 4) + 0.0
         return {"shape": {"type": "rectangle", "size": size}, "position": _metres((x, y)), "angle": angle}
     if kind == "bar":
         a, b = outline
@@ -356,7 +356,7 @@ def _metres(p: Point) -> list[float]:
 
 
 def billiard_break() -> dict[str, Any]:
-    """The billiard with the white ball on its way: velocity, elasticity, friction and colour, edited by hand."""
+    """The billiard with the white ball on its way: velocity, elasticity, friction and colours edited."""
     scene = scene_of(page_of("billiard"))
     colors = [
         "#f7f7f0",
@@ -373,12 +373,12 @@ def billiard_break() -> dict[str, Any]:
         body |= {"friction": 0.05, "elasticity": 0.95, "color": "#1f6b45"}
         if not body.get("anchored"):
             body["color"] = colors[(k - 4) % len(colors)]
-    scene["bodies"][4] |= {"velocity": [7.0, 0.15]}
+    scene["bodies"][4] |= {"velocity": [9.0, 0.2]}
     return scene
 
 
 def cradle_of_steel() -> dict[str, Any]:
-    """The cradle with balls that lose nothing, one of them lighter."""
+    """The cradle with balls that lose nothing, on strings that weigh next to nothing."""
     scene = scene_of(page_of("cradle"))
     for body in scene["bodies"]:
         if body["shape"]["type"] == "circle":
