@@ -13,6 +13,7 @@ from cli.render.style import CLEAN, PALETTE, RGB, mix, rgb
 from cli.render.text import lettering
 
 if TYPE_CHECKING:
+    from sketch.ink import Stroke
     from sketch.recognize import Reading, Recognition
 
 __all__ = ["overlay"]
@@ -80,14 +81,17 @@ def _draw_reading(page: _Page, reading: Reading, color: RGB, strokes: list[Array
         page.ink(strokes, color, width=2)
 
 
-def _label_at(reading: Reading, strokes: list) -> Array:  # type: ignore[type-arg]
-    """Beside the top of the outline, or of the ink where there is none."""
-    points = (
-        reading.outline
-        if len(reading.outline)
-        else np.concatenate([strokes[k].points for k in reading.strokes])
-    )
-    return np.array([points[:, 0].mean(), points[:, 1].min()])
+def _label_at(reading: Reading, strokes: list[Stroke]) -> Array:
+    """The topmost point of the outline above its middle; of the ink where there is no outline."""
+    v = reading.outline
+    if len(v) < 2:
+        v = np.concatenate([strokes[k].points for k in reading.strokes])
+    middle = float(v[:, 0].min() + v[:, 0].max()) / 2
+    ends = np.roll(v, -1, axis=0)
+    crosses = (v[:, 0] - middle) * (ends[:, 0] - middle) <= 0
+    a, b = v[crosses], ends[crosses]
+    along = np.divide(middle - a[:, 0], b[:, 0] - a[:, 0], out=np.zeros(len(a)), where=b[:, 0] != a[:, 0])
+    return np.array([middle, float((a[:, 1] + along * (b[:, 1] - a[:, 1])).min(initial=v[:, 1].max()))])
 
 
 class _Page:

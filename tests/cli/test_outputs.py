@@ -1,0 +1,97 @@
+"""Files appear whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from cli.main import main
+from cli.outputs import Outputs
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_all_files_or_none(tmp_path: Path) -> None:
+    old = tmp_path / "a.json"
+    old.write_text("old")
+
+    def fail_half_way() -> None:
+        with Outputs() as files:
+            files.write(str(old), b"new")
+            files.write(str(tmp_path / "b.json"), b"new")
+            raise RuntimeError("half-way")
+
+    with pytest.raises(RuntimeError, match="half-way"):
+        fail_half_way()
+    assert old.read_text() == "old"
+    assert os.listdir(tmp_path) == ["a.json"]
+
+
+def test_written_files_replace_old_ones_and_keep_their_permissions(tmp_path: Path) -> None:
+    old, new, link = tmp_path / "a.json", tmp_path / "b.json", tmp_path / "link.json"
+    old.write_text("old")
+    old.chmod(0o640)
+    link.symlink_to(old)
+    with Outputs() as files:
+        files.write(str(link), b"x")
+        files.write(str(new), b"y")
+        assert old.read_text() == "old"
+    assert link.is_symlink()
+    assert old.read_bytes() == b"x"
+    assert old.stat().st_mode & 0o777 == 0o640
+    mask = os.umask(0)
+    os.umask(mask)
+    assert new.stat().st_mode & 0o777 == 0o666 & ~mask
+
+
+def test_a_failure_while_encoding_keeps_the_old_video(
+    scene_file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    video = scene_file.parent / "run.mp4"
+    video.write_bytes(b"the old video")
+
+    def fail(path: str, *_: object) -> None:
+        Path(path).write_bytes(b"half a video")
+        raise OSError(28, "No space left on device", path)
+
+    monkeypatch.setattr("cli.render.video.write_video", fail)
+    assert main(["simulate", str(scene_file), "-o", str(video), "-o", str(video.with_suffix(".csv"))]) == 1
+    assert capsys.readouterr().err.rstrip().endswith("no space left on device")
+    assert video.read_bytes() == b"the old video"
+    assert sorted(os.listdir(scene_file.parent)) == ["run.mp4", "scene.json"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_leaves_nothing(scene_file: Path, number: signal.Signals) -> None:
+    folder = scene_file.parent
+    # An hour of video: it is surely still being drawn when the signal comes.
+    command = [sys.executable, "-m", "cli", "simulate", str(scene_file), "-o", str(folder / "run.mp4")]
+    with subprocess.Popen(
+        [*command, "--duration", "3600", "--size", "64x64"], cwd=ROOT, stderr=subprocess.PIPE, text=True
+    ) as process:
+        deadline = time.monotonic() + 30
+        while len(os.listdir(folder)) == 1 and time.monotonic() < deadline:
+            time.sleep(0.02)
+        assert len(os.listdir(folder)) == 2, "the file beside did not appear"
+        process.send_signal(number)
+        _, stderr = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert stderr.splitlines()[-1] == "error: interrupted; no output was written"
+    assert os.listdir(folder) == ["scene.json"]
+
+
+def test_a_closed_pipe_is_no_traceback(scene_file: Path) -> None:
+    command = [sys.executable, "-m", "cli", "simulate", str(scene_file), "-o", "-"]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        assert process.stderr is not None
+        stderr = process.stderr.read().decode()
+    assert process.returncode == 1
+    assert stderr == "error: standard output was closed before all was written\n"
