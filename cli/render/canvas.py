@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cli.render.outline import is_convex
 from cli.render.style import RGB
 
 __all__ = ["BLOOM", "ONE", "Canvas", "fixed", "paint"]
@@ -99,8 +100,12 @@ class Canvas:
         """Fill a polygon; points: fixed-point, shape (n, 2)."""
         import cv2
 
+        convex = is_convex(points)
         for (plane, where, shift), value in zip(self.views(points), paint(color, self.is_yuv), strict=True):
-            cv2.fillPoly(plane, [where], value, cv2.LINE_AA, shift)
+            if convex:  # cv2 smooths the sides of convex polygons better
+                cv2.fillConvexPoly(plane, where, value, cv2.LINE_AA, shift)
+            else:
+                cv2.fillPoly(plane, [where], value, cv2.LINE_AA, shift)
 
     def blend(self, mask: Bytes, corner: tuple[int, int], color: RGB) -> None:
         """Lay a colour over the picture through a mask (h, w) of opacity, its corner at a column and row.
