@@ -404,13 +404,35 @@ def scene_json(scene: dict[str, Any]) -> str:
     return "{" + ",\n ".join(parts) + "}\n"
 
 
+PICTURES = {"pendulum-on-paper.jpg": ("pendulum", "photo"), "ramp-on-paper.png": ("ramp", "scan")}
+
+
 def files() -> dict[str, str]:
     """The text samples by name."""
     out = {f"{name}.json": page_of(name).to_json() for name in MACHINES}
     return out | {f"{name}.json": scene_json(scene()) for name, scene in SCENES.items()}
 
 
+def pictures() -> dict[str, bytes]:
+    """The pictures of paper by name, encoded."""
+    import cv2
+    from paper import picture
+
+    out = {}
+    for name, (machine_name, kind) in PICTURES.items():
+        image = picture(page_of(machine_name), kind)
+        if name.endswith(".png"):  # few greys make a small file
+            image = image // 12 * 12
+        quality = (
+            [cv2.IMWRITE_JPEG_QUALITY, 72] if name.endswith(".jpg") else [cv2.IMWRITE_PNG_COMPRESSION, 9]
+        )
+        out[name] = cv2.imencode(Path(name).suffix, image, quality)[1].tobytes()
+    return out
+
+
 if __name__ == "__main__":
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
     for name, text in files().items():
         (folder / name).write_text(text)
+    for name, data in pictures().items():
+        (folder / name).write_bytes(data)

@@ -40,8 +40,18 @@ def test_the_committed_sample_is_what_the_script_draws(name: str) -> None:
         assert np.max(np.abs(np.subtract(numbers(a), numbers(b)))) <= 0.1001, "run python samples/draw.py"
 
 
+def test_the_committed_pictures_are_what_the_script_draws() -> None:
+    import cv2
+
+    for name, data in draw.pictures().items():
+        committed = cv2.imread(str(SAMPLES / name)).astype(float)
+        drawn = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+        assert np.mean(np.abs(committed - drawn)) < 2, "run python samples/draw.py"
+
+
 def test_every_sample_file_has_a_source() -> None:
     assert {path.name for path in SAMPLES.glob("*.json")} == set(TEXTS)
+    assert {path.name for path in SAMPLES.glob("*-on-paper.*")} == set(draw.PICTURES)
 
 
 def centre(outline: list[tuple[float, float]]) -> np.ndarray[Any, Any]:
@@ -99,6 +109,26 @@ def misread(page: draw.Page, scene: Scene) -> list[str]:
 def test_the_drawing_is_read_as_it_was_meant(name: str) -> None:
     scene = recognize(load_sketch(SAMPLES / f"{name}.json")).scene
     assert "\n".join(misread(draw.page_of(name), scene)) == ""
+
+
+@pytest.mark.parametrize("name", draw.PICTURES)
+def test_the_picture_is_read_as_its_strokes_are(name: str) -> None:
+    """A photo shifts and tilts the page, so places are not compared."""
+    scene = recognize(load_sketch(SAMPLES / name)).scene
+    page = draw.page_of(draw.PICTURES[name][0])
+
+    def meaning(shape: str, vertices: int, anchored: bool) -> tuple[str, int, bool]:
+        return shape, vertices if shape == "polygon" else 0, anchored
+
+    read = [
+        meaning(type(b.shape).__name__.lower(), len(getattr(b.shape, "vertices", [])), b.anchored)
+        for b in scene.bodies
+    ]
+    meant = [meaning(b["kind"], len(b["outline"]), b["anchored"]) for b in page.bodies]
+    assert sorted(read) == sorted(meant)
+    assert len(scene.joints) == len(page.joints)
+    g = np.array(page.gravity) * [9.81, -9.81]
+    assert math.dist(scene.gravity, g) < 9.81 * math.radians(8)
 
 
 def test_a_page_without_an_arrow_says_so() -> None:
