@@ -1,22 +1,150 @@
-/* Placeholder: free motion only, until the crowd solver lands. */
-#include "crowd.h"
-
+/* The crowd's steps: frames of collision finding, each of several substeps of the solver (Catto's Solver2D, 2024). */
 #include <stdlib.h>
 
-struct Crowd {
-    int unused;
-};
-Crowd *crowd_create(const World *world) { return (void)world, calloc(1, sizeof(Crowd)); }
-void crowd_destroy(Crowd *crowd) { free(crowd); }
-int crowd_step(Crowd *crowd, World *world, double dt, double tolerance) {
-    (void)crowd, (void)tolerance;
-    for (int32_t i = 1; i < world->body_count; i++) {
-        Body *b = &world->body[i];
-        b->position = vmad(vmad(b->position, dt, b->velocity), dt * dt / 2, world->gravity);
-        b->velocity = vmad(b->velocity, dt, world->gravity);
-        b->angle += dt * b->spin;
+#include "crowd_parts.h"
+
+static const double FRAME = 1.0 / 60;  /* [s]: contacts are found anew this often */
+static const int32_t SUBSTEPS = 4;     /* of a frame */
+static const double STIFFNESS = 0.25;  /* of a contact: its frequency times the substep */
+static const double DAMPING = 10;      /* ratio */
+
+Crowd *crowd_create(const World *world) {
+    Crowd *crowd = calloc(1, sizeof *crowd);
+    if (!crowd) return NULL;
+    crowd->body_count = world->body_count;
+    crowd->shape_count = world->shape_count;
+    crowd->piece_count = world->piece_count;
+    size_t joints = (size_t)world->joint_count + 1;
+    crowd->mover = calloc((size_t)world->body_count, sizeof *crowd->mover);
+    crowd->pivot = calloc(joints, sizeof *crowd->pivot);
+    crowd->pivot_joint = calloc(joints, sizeof *crowd->pivot_joint);
+    crowd->joint_impulse = calloc(joints, sizeof *crowd->joint_impulse);
+    bool made = crowd->mover && crowd->pivot && crowd->pivot_joint && crowd->joint_impulse;
+    if (!made || touch_create(crowd, world) != SIM_OK || rest_create(crowd, world) != SIM_OK) {
+        crowd_destroy(crowd);
+        return NULL;
     }
+    return crowd;
+}
+
+void crowd_destroy(Crowd *crowd) {
+    if (!crowd) return;
+    touch_destroy(crowd);
+    rest_destroy(crowd);
+    free(crowd->mover);
+    free(crowd->pivot);
+    free(crowd->pivot_joint);
+    free(crowd->joint_impulse);
+    free(crowd);
+}
+
+static void load_pivots(Crowd *crowd, const World *world) {
+    crowd->pivot_count = 0;
+    for (int32_t i = 0; i < world->joint_count; i++) {
+        const Joint *j = &world->joint[i];
+        if (!crowd_moves(world, j->a) && !crowd_moves(world, j->b)) continue;
+        Pose a = body_pose(&world->body[j->a]), b = body_pose(&world->body[j->b]);
+        crowd->pivot_joint[crowd->pivot_count] = i;
+        crowd->pivot[crowd->pivot_count++] = (Pivot){
+            .a = j->a,
+            .b = j->b,
+            .local_a = j->local_a,
+            .local_b = j->local_b,
+            .arm_a = turn(a, j->local_a),
+            .arm_b = turn(b, j->local_b),
+            .apart = vsub(place(b, j->local_b), place(a, j->local_a)),
+            .impulse = crowd->joint_impulse[i],
+        };
+    }
+}
+
+static void touch_pivots(Crowd *crowd) {
+    for (int32_t i = 0; i < crowd->pivot_count; i++)
+        crowd->touched[crowd->pivot[i].a] = crowd->touched[crowd->pivot[i].b] = true;
+}
+
+static void accelerate(Crowd *crowd, const World *world, double dt) {
+    Vec gain = vscale(world->gravity, dt);
+    for (int32_t i = 0; i < world->body_count; i++)
+        if (crowd_moves(world, i)) crowd->mover[i].velocity = vadd(crowd->mover[i].velocity, gain);
+}
+
+static void move(Crowd *crowd, const World *world, double dt) {
+    for (int32_t i = 0; i < world->body_count; i++) {
+        Mover *m = &crowd->mover[i];
+        if (!crowd_moves(world, i)) continue;
+        m->moved = vmad(m->moved, dt, m->velocity);
+        m->turned += dt * m->spin;
+    }
+}
+
+static void substep(Crowd *crowd, World *world, double left, double dt) {
+    static const Soft rigid = {0, 1, 0};
+    Mover *mover = crowd->mover;
+    Soft between = soft(STIFFNESS / dt, DAMPING, dt), wall = soft(2 * STIFFNESS / dt, DAMPING, dt);
+    Soft hinge = soft(2 * STIFFNESS / dt, 5, dt);
+    double threshold = 4 * dt * vlength(world->gravity);
+    bool found;
+    accelerate(crowd, world, dt);
+    contacts_measure(crowd->contact, crowd->contact_count, mover, threshold);
+    touch_near(crowd, world, left, dt, threshold, &found);
+    pivots_warm_start(crowd->pivot, crowd->pivot_count, mover);
+    contacts_warm_start(crowd->contact, crowd->contact_count, mover);
+    for (int32_t pass = 0; pass < 3; pass++) {
+        pivots_solve(crowd->pivot, crowd->pivot_count, mover, hinge);
+        contacts_solve(crowd->contact, crowd->contact_count, mover, between, wall, dt);
+        touch_near(crowd, world, left, dt, threshold, &found);
+        if (!found) break;
+    }
+    move(crowd, world, dt);
+    touch_advance(crowd, dt);
+    crowd->moment++;
+    pivots_solve(crowd->pivot, crowd->pivot_count, mover, rigid);
+    contacts_relax(crowd->contact, crowd->contact_count, mover, dt);
+    contacts_bounce(crowd->contact, crowd->contact_count, mover);
+    world->profile.crowd_steps++;
+    world->profile.crowd_contacts += crowd->contact_count;
+}
+
+static void store(Crowd *crowd, World *world) {
+    for (int32_t i = 0; i < world->body_count; i++) {
+        Body *body = &world->body[i];
+        if (body->mode != MODE_CROWD) continue;
+        const Mover *m = &crowd->mover[i];
+        body->position = vadd(body->position, m->moved);
+        body->angle += m->turned;
+        body->velocity = m->velocity;
+        body->spin = m->spin;
+    }
+    for (int32_t i = 0; i < crowd->pivot_count; i++) crowd->joint_impulse[crowd->pivot_joint[i]] = crowd->pivot[i].impulse;
+}
+
+static int frame(Crowd *crowd, World *world, double dt, double tolerance) {
+    int32_t substeps = (int32_t)ceil(SUBSTEPS * dt / FRAME - 1e-9);
+    if (substeps < 1) substeps = 1;
+    double h = dt / substeps;
+    int status = touch_frame(crowd, world, dt, h);
+    if (status != SIM_OK) return status;
+    load_pivots(crowd, world);
+    touch_pivots(crowd);
+    for (int32_t k = 0; k < substeps; k++) substep(crowd, world, dt - k * h, h);
+    store(crowd, world);
+    rest_update(crowd, world, dt, tolerance);
     return SIM_OK;
 }
-int world_decompose(World *world) { return (void)world, SIM_OK; }
-int world_separate(World *world, double tolerance) { return (void)world, (void)tolerance, SIM_OK; }
+
+static void release(Crowd *crowd, World *world) {
+    for (int32_t i = 0; i < world->body_count; i++)
+        if (crowd_moves(world, i) && !crowd->touched[i]) world->body[i].mode = MODE_FLIGHT;
+}
+
+int crowd_step(Crowd *crowd, World *world, double dt, double tolerance) {
+    int32_t frames = (int32_t)ceil(dt / FRAME - 1e-6);
+    if (frames < 1) frames = 1;
+    for (int32_t k = 0; k < frames; k++) {
+        int status = frame(crowd, world, dt / frames, tolerance);
+        if (status != SIM_OK) return status;
+    }
+    release(crowd, world);
+    return SIM_OK;
+}

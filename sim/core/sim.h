@@ -96,4 +96,9 @@ SIM_API void sim_events(const Sim *sim, SimEvent *out); /* sim_event_count of th
 SIM_API void sim_profile(const Sim *sim, SimProfile *out);
 SIM_API void sim_destroy(Sim *sim);
 
+/* Cut a simple polygon (x, y of count vertices, counter-clockwise) into convex pieces: piece k has the vertices
+ * index[piece_start[k]] ... index[piece_start[k + 1] - 1].  Room: count + 1 and 3 count. Returns how many; -1 when out
+ * of memory. */
+SIM_API int32_t sim_decompose(const double *vertices, int32_t count, int32_t *piece_start, int32_t *index);
+
 #endif

@@ -1,0 +1,46 @@
+/* The broad phase: which boxes overlap. */
+#ifndef BROAD_H
+#define BROAD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "vec.h"
+
+typedef struct Box {
+    Vec low, high;
+} Box;
+
+static inline bool boxes_meet(const Box *a, const Box *b) {
+    return a->low.x <= b->high.x && b->low.x <= a->high.x && a->low.y <= b->high.y && b->low.y <= a->high.y;
+}
+
+static inline Box box_join(Box a, Box b) {
+    return (Box){vec(fmin(a.low.x, b.low.x), fmin(a.low.y, b.low.y)),
+                 vec(fmax(a.high.x, b.high.x), fmax(a.high.y, b.high.y))};
+}
+
+static inline Box box_grow(Box a, double by) {
+    return (Box){vec(a.low.x - by, a.low.y - by), vec(a.high.x + by, a.high.y + by)};
+}
+
+typedef struct Pair {
+    int32_t a, b; /* a < b */
+} Pair;
+
+typedef struct Sweep {
+    int32_t count;
+    int32_t *order;      /* boxes by their lower end, kept from call to call: nearly sorted the next time */
+    double *low, *high;  /* along the axis, in that order */
+    Pair *pair;
+    int32_t pair_count, pair_capacity;
+} Sweep;
+
+int sweep_create(Sweep *sweep, int32_t count);
+void sweep_destroy(Sweep *sweep);
+
+/* Find all pairs of overlapping boxes of which one at least is marked as moving. Fills sweep->pair.
+ * Returns SIM_OK or SIM_OUT_OF_MEMORY. */
+int sweep_pairs(Sweep *sweep, const Box *box, const bool *moving);
+
+#endif

@@ -1,0 +1,75 @@
+/* What the parts of the crowd share: crowd.c steps, touch.c finds contacts, rest.c puts islands to sleep. */
+#ifndef CROWD_PARTS_H
+#define CROWD_PARTS_H
+
+#include "broad.h"
+#include "crowd.h"
+#include "manifold.h"
+#include "rows.h"
+
+/* Two pieces whose boxes meet but that do not touch yet: they cannot before the gap along the normal is used up. */
+typedef struct Near {
+    int32_t piece_a, piece_b;
+    int32_t a, b; /* bodies */
+    Vec normal;   /* of an axis that separates them */
+    double gap;
+} Near;
+
+/* Where contacts of the frame before are found again, by the pair of pieces. */
+typedef struct Memory {
+    Contact *contact;
+    int32_t count;
+    int32_t *slot; /* open addressing; -1: empty */
+    int32_t slots; /* a power of two */
+} Memory;
+
+struct Crowd {
+    int32_t body_count, shape_count, piece_count;
+    Mover *mover;        /* by body */
+    Pose *start;         /* by body: when the frame began */
+    int64_t *placed;     /* by body: the moment for which its outlines hold */
+    int64_t moment;      /* counts frames and substeps */
+    double *swing;       /* by piece: how far a point of it is from the body's centre, for what turning moves */
+    Vec *local_normal;   /* by piece vertex */
+    Vec *vertex, *normal;
+    Outline *outline;    /* by piece */
+    Box *piece_box;      /* by piece, when the frame began, without margins */
+    Box *shape_box;      /* by shape: all that it may sweep in the frame */
+    bool *shape_moves;
+    Sweep sweep;
+    Near *near;
+    int32_t near_count, near_capacity;
+    Contact *contact;
+    int32_t contact_count, contact_capacity;
+    Memory memory;
+    Pivot *pivot;        /* by joint of the world; the first pivot_count are of moving bodies */
+    int32_t *pivot_joint;
+    int32_t pivot_count;
+    Vec *joint_impulse;  /* by joint: kept for warm starting */
+    /* rest.c */
+    Vec *still_position; /* by body: where it was when it last moved */
+    double *still_angle, *still_time;
+    int32_t *island;     /* by body: union-find */
+    double *island_time;
+    int32_t *ring;       /* by body: the next one that was put to rest with it */
+    bool *touched;       /* by body: has a contact, a joint, or something near */
+};
+
+static inline bool crowd_moves(const World *world, int32_t body) { return world->body[body].mode == MODE_CROWD; }
+
+/* touch.c */
+int touch_create(Crowd *crowd, const World *world);
+void touch_destroy(Crowd *crowd);
+void touch_place(Crowd *crowd, const World *world, int32_t body);
+int touch_frame(Crowd *crowd, World *world, double dt, double substep);
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
+void touch_advance(Crowd *crowd, double substep);
+
+/* rest.c */
+int rest_create(Crowd *crowd, const World *world);
+void rest_destroy(Crowd *crowd);
+void rest_wake(Crowd *crowd, World *world, int32_t body);
+bool rest_wake_joined(Crowd *crowd, World *world);
+void rest_update(Crowd *crowd, World *world, double dt, double tolerance);
+
+#endif

@@ -1,0 +1,141 @@
+/* Putting islands to rest, and waking them.
+ *
+ * A body is still while it stays within a small distance of where it was; an island, all that hangs together by touch
+ * and joints, rests once all its bodies have been still for a while.
+ */
+#include <stdlib.h>
+
+#include "crowd_parts.h"
+
+static const double STILL_TIME = 0.25;    /* [s] */
+static const double STILL_SHARE = 2e-3;   /* of a body's reach: what it may move in that time */
+
+int rest_create(Crowd *crowd, const World *world) {
+    size_t n = (size_t)world->body_count;
+    crowd->still_position = calloc(n, sizeof *crowd->still_position);
+    crowd->still_angle = calloc(n, sizeof *crowd->still_angle);
+    crowd->still_time = calloc(n, sizeof *crowd->still_time);
+    crowd->island = calloc(n, sizeof *crowd->island);
+    crowd->island_time = calloc(n, sizeof *crowd->island_time);
+    crowd->ring = calloc(n, sizeof *crowd->ring);
+    crowd->touched = calloc(n, sizeof *crowd->touched);
+    if (!crowd->still_position || !crowd->still_angle || !crowd->still_time || !crowd->island || !crowd->island_time ||
+        !crowd->ring || !crowd->touched)
+        return SIM_OUT_OF_MEMORY;
+    for (int32_t i = 0; i < world->body_count; i++) crowd->ring[i] = i;
+    return SIM_OK;
+}
+
+void rest_destroy(Crowd *crowd) {
+    free(crowd->still_position);
+    free(crowd->still_angle);
+    free(crowd->still_time);
+    free(crowd->island);
+    free(crowd->island_time);
+    free(crowd->ring);
+    free(crowd->touched);
+}
+
+/* Wake a body and all that were put to rest with it. */
+void rest_wake(Crowd *crowd, World *world, int32_t body) {
+    int32_t at = body;
+    do {
+        int32_t next = crowd->ring[at];
+        crowd->ring[at] = at;
+        if (world->body[at].mode == MODE_REST) world->body[at].mode = MODE_CROWD;
+        crowd->still_time[at] = 0;
+        at = next;
+    } while (at != body);
+}
+
+/* What hangs on a moving body moves. Whether anything woke. */
+bool rest_wake_joined(Crowd *crowd, World *world) {
+    bool woke = false;
+    for (int32_t i = 0; i < world->joint_count; i++) {
+        int32_t a = world->joint[i].a, b = world->joint[i].b;
+        if (crowd_moves(world, b)) {
+            int32_t other = a;
+            a = b;
+            b = other;
+        }
+        if (!crowd_moves(world, a) || world->body[b].mode != MODE_REST) continue;
+        rest_wake(crowd, world, b);
+        woke = true;
+    }
+    return woke;
+}
+
+static int32_t root(int32_t *island, int32_t i) {
+    while (island[i] != i) i = island[i] = island[island[i]];
+    return i;
+}
+
+/* The lower index becomes the root, so that islands do not depend on the order of the contacts. */
+static void join(int32_t *island, int32_t i, int32_t j) {
+    i = root(island, i);
+    j = root(island, j);
+    if (i < j) island[j] = i;
+    if (j < i) island[i] = j;
+}
+
+static void find_islands(Crowd *crowd, const World *world) {
+    for (int32_t i = 0; i < world->body_count; i++) crowd->island[i] = i;
+    for (int32_t i = 0; i < crowd->contact_count; i++) {
+        const Contact *c = &crowd->contact[i];
+        if (c->walled) continue;
+        for (int32_t k = 0; k < c->count; k++)
+            if (c->point[k].impulse_n > 0) {
+                join(crowd->island, c->a, c->b);
+                break;
+            }
+    }
+    for (int32_t i = 0; i < crowd->pivot_count; i++) {
+        const Pivot *p = &crowd->pivot[i];
+        if (crowd_moves(world, p->a) && crowd_moves(world, p->b)) join(crowd->island, p->a, p->b);
+    }
+}
+
+static void update_still(Crowd *crowd, const World *world, double dt, double tolerance) {
+    bool pulled = world->gravity.x != 0 || world->gravity.y != 0;
+    for (int32_t i = 0; i < world->body_count; i++) {
+        const Body *body = &world->body[i];
+        if (body->mode != MODE_CROWD) continue;
+        /* without gravity nothing presses bodies together: what drifts goes on drifting */
+        double allowed = pulled ? fmax(STILL_SHARE * body->reach, 0.1 * tolerance) : 1e-9 * body->reach;
+        double moved = vlength(vsub(body->position, crowd->still_position[i])) +
+                       body->reach * fabs(body->angle - crowd->still_angle[i]);
+        if (moved > allowed || crowd->still_time[i] == 0) {
+            crowd->still_position[i] = body->position;
+            crowd->still_angle[i] = body->angle;
+            crowd->still_time[i] = 0;
+        }
+        crowd->still_time[i] += dt;
+    }
+}
+
+void rest_update(Crowd *crowd, World *world, double dt, double tolerance) {
+    update_still(crowd, world, dt, tolerance);
+    find_islands(crowd, world);
+    for (int32_t i = 0; i < world->body_count; i++) crowd->island_time[i] = INFINITY;
+    for (int32_t i = 0; i < world->body_count; i++) {
+        if (!crowd_moves(world, i)) continue;
+        int32_t r = root(crowd->island, i);
+        crowd->island_time[r] = fmin(crowd->island_time[r], crowd->touched[i] ? crowd->still_time[i] : 0);
+    }
+    for (int32_t i = 0; i < world->body_count; i++) {
+        if (!crowd_moves(world, i)) continue;
+        int32_t r = root(crowd->island, i);
+        if (crowd->island_time[r] < STILL_TIME) continue;
+        Body *body = &world->body[i];
+        body->mode = MODE_REST;
+        body->velocity = vec(0, 0);
+        body->spin = 0;
+        if (i == r) {
+            world->profile.rests++;
+            crowd->ring[i] = i;
+        } else {
+            crowd->ring[i] = crowd->ring[r];
+            crowd->ring[r] = i;
+        }
+    }
+}

@@ -1,0 +1,166 @@
+/* Sequential impulses on soft rows: TGS-soft of Catto's Solver2D (2024), in velocities, with substeps.
+ *
+ * A row wants C' = -rate * C with softness; a pass goes through the rows in order and applies what each still lacks,
+ * with the sum clamped (contact: no pull; friction: Coulomb's cone).  Relaxing passes take out the velocity that the
+ * bias put in.
+ */
+#include "rows.h"
+
+static const Soft RIGID = {0, 1, 0};
+
+Soft soft(double frequency, double damping, double dt) {
+    double omega = 2 * 3.14159265358979323846 * frequency;
+    double a1 = 2 * damping + dt * omega, a2 = dt * omega * a1, a3 = 1 / (1 + a2);
+    return (Soft){omega / a1, a2 * a3, a3};
+}
+
+static inline void push(Mover *a, Mover *b, Vec direction, double spin_a, double spin_b, double impulse) {
+    a->velocity = vmad(a->velocity, -impulse * a->inverse_mass, direction);
+    a->spin -= impulse * a->inverse_moment * spin_a;
+    b->velocity = vmad(b->velocity, impulse * b->inverse_mass, direction);
+    b->spin += impulse * b->inverse_moment * spin_b;
+}
+
+static inline double speed(const Mover *a, const Mover *b, Vec direction, double spin_a, double spin_b) {
+    return vdot(direction, vsub(b->velocity, a->velocity)) + b->spin * spin_b - a->spin * spin_a;
+}
+
+void contacts_warm_start(Contact *contact, int32_t count, Mover *mover) {
+    for (int32_t i = 0; i < count; i++) {
+        Contact *c = &contact[i];
+        Mover *a = &mover[c->a], *b = &mover[c->b];
+        Vec n = c->normal, t = vperp(n);
+        for (int32_t k = 0; k < c->count; k++) {
+            Point *p = &c->point[k];
+            push(a, b, n, p->spin_na, p->spin_nb, p->impulse_n);
+            push(a, b, t, p->spin_ta, p->spin_tb, p->impulse_t);
+        }
+    }
+}
+
+void contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold) {
+    for (int32_t i = 0; i < count; i++) {
+        Contact *c = &contact[i];
+        if (c->elasticity <= 0) continue;
+        for (int32_t k = 0; k < c->count; k++) {
+            Point *p = &c->point[k];
+            p->approach = 0;
+            if (p->impulse_n > 0) continue;
+            double v = speed(&mover[c->a], &mover[c->b], c->normal, p->spin_na, p->spin_nb);
+            if (v < -threshold) p->approach = v;
+        }
+    }
+}
+
+static inline void solve_friction(Contact *c, Point *p, Mover *a, Mover *b, Vec t) {
+    double v = speed(a, b, t, p->spin_ta, p->spin_tb), most = c->friction * p->impulse_n;
+    double sum = p->impulse_t - p->mass_t * v;
+    sum = sum > most ? most : sum < -most ? -most : sum;
+    double impulse = sum - p->impulse_t;
+    p->impulse_t = sum;
+    push(a, b, t, p->spin_ta, p->spin_tb, impulse);
+}
+
+static inline void solve_normal(Contact *c, Point *p, Mover *a, Mover *b, double bias, double mass, double back) {
+    double v = speed(a, b, c->normal, p->spin_na, p->spin_nb);
+    double sum = p->impulse_n - p->mass_n * mass * (v + bias) - back * p->impulse_n;
+    sum = sum > 0 ? sum : 0;
+    double impulse = sum - p->impulse_n;
+    p->impulse_n = sum;
+    push(a, b, c->normal, p->spin_na, p->spin_nb, impulse);
+}
+
+/* How far apart the point's two surfaces are now; turning counts to second order. */
+static inline double separation(const Contact *c, const Point *p, const Mover *a, const Mover *b) {
+    return p->separation + vdot(vsub(b->moved, a->moved), c->normal) + b->turned * p->spin_nb - a->turned * p->spin_na -
+           0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
+}
+
+void contacts_solve(Contact *contact, int32_t count, Mover *mover, Soft free, Soft walled, double dt) {
+    double inverse_dt = 1 / dt;
+    for (int32_t i = 0; i < count; i++) {
+        Contact *c = &contact[i];
+        Mover *a = &mover[c->a], *b = &mover[c->b];
+        Soft s = c->walled ? walled : free;
+        for (int32_t k = 0; k < c->count; k++) {
+            Point *p = &c->point[k];
+            double gap = separation(c, p, a, b);
+            if (gap > 0) {
+                solve_normal(c, p, a, b, gap * inverse_dt, 1, 0);
+            } else {
+                double bias = gap * s.rate;
+                solve_normal(c, p, a, b, bias > -c->push ? bias : -c->push, s.mass, s.impulse);
+            }
+        }
+        Vec t = vperp(c->normal);
+        for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
+    }
+}
+
+void contacts_relax(Contact *contact, int32_t count, Mover *mover, double dt) {
+    double inverse_dt = 1 / dt;
+    for (int32_t i = 0; i < count; i++) {
+        Contact *c = &contact[i];
+        Mover *a = &mover[c->a], *b = &mover[c->b];
+        for (int32_t k = 0; k < c->count; k++) {
+            Point *p = &c->point[k];
+            double gap = separation(c, p, a, b);
+            solve_normal(c, p, a, b, gap > 0 ? gap * inverse_dt : 0, RIGID.mass, RIGID.impulse);
+        }
+        Vec t = vperp(c->normal);
+        for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
+    }
+}
+
+void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
+    for (int32_t i = 0; i < count; i++) {
+        Contact *c = &contact[i];
+        for (int32_t k = 0; k < c->count; k++) {
+            Point *p = &c->point[k];
+            if (p->approach == 0 || p->impulse_n <= 0) continue;
+            solve_normal(c, p, &mover[c->a], &mover[c->b], c->elasticity * p->approach, 1, 0);
+            p->approach = 0;
+        }
+    }
+}
+
+void pivots_warm_start(Pivot *pivot, int32_t count, Mover *mover) {
+    for (int32_t i = 0; i < count; i++) {
+        Pivot *p = &pivot[i];
+        Mover *a = &mover[p->a], *b = &mover[p->b];
+        a->velocity = vmad(a->velocity, -a->inverse_mass, p->impulse);
+        a->spin -= a->inverse_moment * vcross(p->arm_a, p->impulse);
+        b->velocity = vmad(b->velocity, b->inverse_mass, p->impulse);
+        b->spin += b->inverse_moment * vcross(p->arm_b, p->impulse);
+    }
+}
+
+/* An arm turned by a small angle since the frame began. */
+static inline Vec turned_arm(Vec arm, double angle) {
+    double c = 1 - 0.5 * angle * angle, s = angle * (1 - angle * angle / 6);
+    return vec(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
+}
+
+void pivots_solve(Pivot *pivot, int32_t count, Mover *mover, Soft soft) {
+    for (int32_t i = 0; i < count; i++) {
+        Pivot *p = &pivot[i];
+        Mover *a = &mover[p->a], *b = &mover[p->b];
+        Vec ra = turned_arm(p->arm_a, a->turned), rb = turned_arm(p->arm_b, b->turned);
+        Vec apart = vadd(p->apart, vadd(vsub(b->moved, a->moved),
+                                        vsub(vsub(rb, p->arm_b), vsub(ra, p->arm_a))));
+        Vec v = vsub(vmad(b->velocity, b->spin, vperp(rb)), vmad(a->velocity, a->spin, vperp(ra)));
+        v = vmad(v, soft.rate, apart);
+        double m = a->inverse_mass + b->inverse_mass, ia = a->inverse_moment, ib = b->inverse_moment;
+        double k11 = m + ia * ra.y * ra.y + ib * rb.y * rb.y;
+        double k12 = -ia * ra.x * ra.y - ib * rb.x * rb.y;
+        double k22 = m + ia * ra.x * ra.x + ib * rb.x * rb.x;
+        double det = 1 / (k11 * k22 - k12 * k12);
+        Vec j = vec(-soft.mass * det * (k22 * v.x - k12 * v.y) - soft.impulse * p->impulse.x,
+                    -soft.mass * det * (k11 * v.y - k12 * v.x) - soft.impulse * p->impulse.y);
+        p->impulse = vadd(p->impulse, j);
+        a->velocity = vmad(a->velocity, -a->inverse_mass, j);
+        a->spin -= a->inverse_moment * vcross(ra, j);
+        b->velocity = vmad(b->velocity, b->inverse_mass, j);
+        b->spin += b->inverse_moment * vcross(rb, j);
+    }
+}

@@ -1,0 +1,66 @@
+/* The rows that a crowd's substep solves for: contact points and pivots between moving bodies. */
+#ifndef ROWS_H
+#define ROWS_H
+
+#include <stdint.h>
+
+#include "vec.h"
+
+/* What the rows read and write of a body; the background's inverse masses are 0, so that writing to it does nothing. */
+typedef struct Mover {
+    Vec velocity;
+    double spin;
+    Vec moved;     /* since the frame began */
+    double turned;
+    double inverse_mass, inverse_moment;
+} Mover;
+
+/* Soft contact (Catto, "Solver2D", 2024): a spring and damper given by frequency and damping ratio, integrated implicitly. */
+typedef struct Soft {
+    double rate;    /* velocity wanted per metre of error [1/s] */
+    double mass;    /* share of the impulse that a rigid row would take */
+    double impulse; /* share of the impulse so far that is given back */
+} Soft;
+
+Soft soft(double frequency, double damping, double dt);
+
+typedef struct Point {
+    double separation;           /* when the frame began */
+    double spin_na, spin_nb;     /* r x n of either body: the lever of the normal */
+    double spin_ta, spin_tb;     /* r x t */
+    double along_na, along_nb;   /* r . n, for the second order of turning */
+    double mass_n, mass_t;       /* effective masses */
+    double impulse_n, impulse_t; /* of one substep, kept for warm starting */
+    double approach;             /* normal velocity before the touch, for restitution; 0 when none is due */
+    uint32_t feature;
+} Point;
+
+typedef struct Contact {
+    int32_t a, b;       /* movers */
+    int32_t count;
+    int32_t walled;     /* one of the two cannot move */
+    Vec normal;         /* from a to b */
+    double friction, elasticity;
+    double push;        /* the fastest that an overlap is pushed apart [m/s] */
+    uint64_t key;       /* the pieces */
+    Point point[2];
+} Contact;
+
+typedef struct Pivot {
+    int32_t a, b;
+    Vec local_a, local_b;
+    Vec arm_a, arm_b;    /* in the scene's frame when the frame began */
+    Vec apart;           /* then */
+    Vec impulse;
+} Pivot;
+
+void contacts_warm_start(Contact *contact, int32_t count, Mover *mover);
+void contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold);
+void contacts_solve(Contact *contact, int32_t count, Mover *mover, Soft free, Soft walled, double dt);
+void contacts_relax(Contact *contact, int32_t count, Mover *mover, double dt);
+void contacts_bounce(Contact *contact, int32_t count, Mover *mover);
+
+void pivots_warm_start(Pivot *pivot, int32_t count, Mover *mover);
+void pivots_solve(Pivot *pivot, int32_t count, Mover *mover, Soft soft);
+
+#endif
