@@ -124,21 +124,21 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
     }
 }
 
+/* An arm turned by a small angle since the frame began. */
+static inline Vec turned_arm(Vec arm, double angle) {
+    double c = 1 - 0.5 * angle * angle, s = angle * (1 - angle * angle / 6);
+    return vec(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
+}
+
 void pivots_warm_start(Pivot *pivot, int32_t count, Mover *mover) {
     for (int32_t i = 0; i < count; i++) {
         Pivot *p = &pivot[i];
         Mover *a = &mover[p->a], *b = &mover[p->b];
         a->velocity = vmad(a->velocity, -a->inverse_mass, p->impulse);
-        a->spin -= a->inverse_moment * vcross(p->arm_a, p->impulse);
+        a->spin -= a->inverse_moment * vcross(turned_arm(p->arm_a, a->turned), p->impulse);
         b->velocity = vmad(b->velocity, b->inverse_mass, p->impulse);
-        b->spin += b->inverse_moment * vcross(p->arm_b, p->impulse);
+        b->spin += b->inverse_moment * vcross(turned_arm(p->arm_b, b->turned), p->impulse);
     }
-}
-
-/* An arm turned by a small angle since the frame began. */
-static inline Vec turned_arm(Vec arm, double angle) {
-    double c = 1 - 0.5 * angle * angle, s = angle * (1 - angle * angle / 6);
-    return vec(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
 }
 
 void pivots_solve(Pivot *pivot, int32_t count, Mover *mover, Soft soft) {
