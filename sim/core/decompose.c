@@ -137,7 +137,8 @@ static void triangulate(Ring *ring, Mesh *mesh, int32_t count) {
 /* Whether the corner at the start of `b`, coming along `a`, is convex once both bound one piece. */
 static bool joint_convex(const Mesh *mesh, int32_t a, int32_t b) {
     int32_t p = mesh->from[a], q = mesh->from[b], r = mesh->from[mesh->next[b]];
-    return corner(mesh->vertex, p, q, r) >= -100 * flat(mesh->vertex, p, q, r);
+    Vec u = vsub(mesh->vertex[q], mesh->vertex[p]), v = vsub(mesh->vertex[r], mesh->vertex[q]);
+    return vcross(u, v) >= -1e-12 * vlength(u) * vlength(v);
 }
 
 static void merge(Mesh *mesh) {
