@@ -1,11 +1,11 @@
-/* What the parts of the crowd share: crowd.c steps, touch.c finds contacts, rest.c puts islands to sleep. */
+/* What the parts of the crowd share: crowd.c steps, crowd_touch.c finds contacts, crowd_rest.c puts islands to sleep. */
 #ifndef CROWD_PARTS_H
 #define CROWD_PARTS_H
 
 #include "broad.h"
 #include "crowd.h"
-#include "manifold.h"
-#include "rows.h"
+#include "posed.h"
+#include "crowd_rows.h"
 
 /* Two pieces whose boxes meet but that do not touch yet: they cannot before the gap along the normal is used up. */
 typedef struct Near {
@@ -29,10 +29,7 @@ struct Crowd {
     Pose *start;         /* by body: when the frame began */
     int64_t *placed;     /* by body: the moment for which its outlines hold */
     int64_t moment;      /* counts frames and substeps */
-    double *swing;       /* by piece: how far a point of it is from the body's centre, for what turning moves */
-    Vec *local_normal;   /* by piece vertex */
-    Vec *vertex, *normal;
-    Outline *outline;    /* by piece */
+    Posed posed;
     Box *piece_box;      /* by piece, when the frame began, without margins */
     Box *shape_box;      /* by shape: all that it may sweep in the frame */
     bool *shape_moves;
@@ -46,7 +43,7 @@ struct Crowd {
     int32_t *pivot_joint;
     int32_t pivot_count;
     Vec *joint_impulse;  /* by joint: kept for warm starting */
-    /* rest.c */
+    /* crowd_rest.c */
     Vec *still_position; /* by body: where it was when it last moved */
     double *still_angle, *still_time;
     int32_t *island;     /* by body: union-find */
@@ -57,7 +54,7 @@ struct Crowd {
 
 static inline bool crowd_moves(const World *world, int32_t body) { return world->body[body].mode == MODE_CROWD; }
 
-/* touch.c */
+/* crowd_touch.c */
 int touch_create(Crowd *crowd, const World *world);
 void touch_destroy(Crowd *crowd);
 void touch_place(Crowd *crowd, const World *world, int32_t body);
@@ -65,7 +62,7 @@ int touch_frame(Crowd *crowd, World *world, double dt, double substep);
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
 void touch_advance(Crowd *crowd, double substep);
 
-/* rest.c */
+/* crowd_rest.c */
 int rest_create(Crowd *crowd, const World *world);
 void rest_destroy(Crowd *crowd);
 void rest_wake(Crowd *crowd, World *world, int32_t body);

@@ -172,7 +172,6 @@ static void collect(const Mesh *mesh, Cutting *cutting, bool *seen) {
         int32_t begin = cutting->index_count;
         do {
             seen[at] = true;
-            cutting->cut[cutting->index_count] = mesh->twin[at] >= 0;
             cutting->index[cutting->index_count++] = mesh->from[at];
             at = mesh->next[at];
         } while (at != e);
@@ -201,14 +200,12 @@ static int cutting_reserve(Cutting *cutting, int32_t count) {
     *cutting = (Cutting){0};
     cutting->start = calloc((size_t)count + 1, sizeof *cutting->start);
     cutting->index = malloc(edges * sizeof *cutting->index);
-    cutting->cut = calloc(edges, sizeof *cutting->cut);
-    return cutting->start && cutting->index && cutting->cut ? SIM_OK : SIM_OUT_OF_MEMORY;
+    return cutting->start && cutting->index ? SIM_OK : SIM_OUT_OF_MEMORY;
 }
 
 void cutting_destroy(Cutting *cutting) {
     free(cutting->start);
     free(cutting->index);
-    free(cutting->cut);
     *cutting = (Cutting){0};
 }
 
@@ -247,8 +244,8 @@ int world_decompose(World *world) {
     for (int32_t i = 0; i < world->shape_count; i++) room += 3 * world->shape[i].count;
     world->piece = malloc(((size_t)room + 1) * sizeof *world->piece); /* a triangle has 3 vertices: enough pieces */
     world->piece_vertex = malloc(((size_t)room + 1) * sizeof *world->piece_vertex);
-    world->piece_cut = calloc((size_t)room + 1, sizeof *world->piece_cut);
-    if (!world->piece || !world->piece_vertex || !world->piece_cut) return SIM_OUT_OF_MEMORY;
+    world->piece_corner = malloc(((size_t)room + 1) * sizeof *world->piece_corner);
+    if (!world->piece || !world->piece_vertex || !world->piece_corner) return SIM_OUT_OF_MEMORY;
     room = 0;
     for (int32_t i = 0; i < world->shape_count; i++) {
         Shape *shape = &world->shape[i];
@@ -256,6 +253,7 @@ int world_decompose(World *world) {
         shape->first_piece = pieces;
         if (shape->radius > 0) {
             world->piece_vertex[room] = vertex[0];
+            world->piece_corner[room] = shape->first;
             world->piece[pieces++] = (Piece){i, room++, 1, shape->radius};
         } else {
             Cutting cutting;
@@ -265,7 +263,7 @@ int world_decompose(World *world) {
                 int32_t first = room;
                 for (int32_t k = cutting.start[p]; k < cutting.start[p + 1]; k++, room++) {
                     world->piece_vertex[room] = vertex[cutting.index[k]];
-                    world->piece_cut[room] = cutting.cut[k];
+                    world->piece_corner[room] = shape->first + cutting.index[k];
                 }
                 world->piece[pieces++] = (Piece){i, first, room - first, 0};
             }

@@ -12,7 +12,6 @@ typedef struct Cutting {
     int32_t piece_count, index_count;
     int32_t *start; /* piece_count + 1 */
     int32_t *index;
-    bool *cut;      /* by index: the side that begins there is a cut through the polygon, not part of its outline */
 } Cutting;
 
 /* Cut a simple polygon with count >= 3 vertices, counter-clockwise. The pieces cover it without overlap.

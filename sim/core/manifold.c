@@ -1,35 +1,49 @@
 /* Contact points of convex pieces: separating axes, then the facing sides clipped against each other.
  *
  * The axis of greatest separation: Gottschalk 1996; clipping: Sutherland and Hodgman 1974, here of one side.
+ * Pieces of a larger shape touch only as that shape does: nothing catches on the cuts between them.
  */
 #include "manifold.h"
 
-enum { SMALL = 8 }; /* polygons up to this size are searched vertex by vertex */
+enum { SMALL = 8 }; /* outlines up to this size are searched vertex by vertex */
 
 #define FROM_B 0x80000000u
+
+static int32_t after(const Outline *o, int32_t i) { return i + 1 < o->count ? i + 1 : 0; }
+static int32_t before(const Outline *o, int32_t i) { return i > 0 ? i - 1 : o->count - 1; }
+
+static bool is_cut(const Outline *o, int32_t i) {
+    return o->leaving && (o->leaving[i].x != o->normal[i].x || o->leaving[i].y != o->normal[i].y);
+}
+
+/* Whether the whole shape, too, can be touched at this vertex from outside along n: n lies between the normals of its two
+ * sides.  No convex body reaches a concave corner. */
+static bool exposed(const Outline *o, int32_t i, Vec n) {
+    static const double LEEWAY = 1e-3; /* [rad] */
+    if (!o->arriving) return true;
+    Vec in = o->arriving[i], out = o->leaving[i];
+    return vcross(in, out) > -LEEWAY && vcross(in, n) > -LEEWAY && vcross(n, out) > -LEEWAY &&
+           vdot(n, vadd(in, out)) > 0;
+}
 
 typedef struct Facing {
     double separation; /* of b from the side of a */
     int32_t side, vertex;
+    bool touches;      /* the shapes can touch there; if not, it only tells how far they are apart */
 } Facing;
 
-/* The vertex farthest against the normal, from `start` uphill. */
-static int32_t climb(const Outline *b, Vec normal, int32_t start) {
-    int32_t at = start, last = b->count - 1;
-    double best = vdot(normal, b->vertex[at]);
-    for (int32_t k = 0; k < b->count; k++) {
-        int32_t next = at < last ? at + 1 : 0;
-        double value = vdot(normal, b->vertex[next]);
-        if (value > best) break;
-        best = value;
-        at = next;
-    }
-    for (int32_t k = 0; k < b->count; k++) {
-        int32_t next = at > 0 ? at - 1 : last;
-        double value = vdot(normal, b->vertex[next]);
-        if (value >= best) break;
-        best = value;
-        at = next;
+/* The vertex farthest against the normal, from `start` on. */
+static int32_t descend(const Outline *b, Vec normal, int32_t start) {
+    int32_t at = start;
+    double least = vdot(normal, b->vertex[at]);
+    for (int32_t way = 0; way < 2; way++) {
+        for (int32_t k = 0; k < b->count; k++) {
+            int32_t next = way ? before(b, at) : after(b, at);
+            double value = vdot(normal, b->vertex[next]);
+            if (way ? value >= least : value > least) break;
+            least = value;
+            at = next;
+        }
     }
     return at;
 }
@@ -50,30 +64,35 @@ static int32_t lowest(const Outline *b, Vec normal) {
 /* The side of a from which b is farthest, or the first from which it is farther than `enough`.  The lowest vertex of b
  * turns with the sides of a (rotating calipers), so large outlines cost the sum of their vertices. */
 static Facing face(const Outline *a, const Outline *b, double enough) {
-    Facing best = {-INFINITY, -1, 0};
+    Facing best = {-INFINITY, -1, 0, false};
     int32_t low = 0;
     for (int32_t i = 0; i < a->count; i++) {
         Vec n = a->normal[i];
-        low = b->count <= SMALL || i == 0 ? lowest(b, n) : climb(b, n, low);
+        low = b->count <= SMALL || i == 0 ? lowest(b, n) : descend(b, n, low);
         double separation = vdot(n, vsub(b->vertex[low], a->vertex[i]));
         if (separation <= best.separation) continue;
-        if (a->cut[i] && separation <= 0) continue;
-        best = (Facing){separation, i, low};
+        bool touches = !is_cut(a, i) && (b->count == 1 || exposed(b, low, vscale(n, -1)));
+        if (!touches && separation <= 0) continue;
+        best = (Facing){separation, i, low, touches};
         if (separation > enough) break;
     }
     return best;
 }
 
-static int32_t after(const Outline *a, int32_t i) { return i + 1 < a->count ? i + 1 : 0; }
-static int32_t before(const Outline *a, int32_t i) { return i > 0 ? i - 1 : a->count - 1; }
+/* No contact; `gap` is how far the two are apart at least. */
+static void apart(Manifold *m, Vec normal, double gap) {
+    m->normal = normal;
+    m->gap = gap;
+    m->count = 0;
+}
 
 static void one_point(Manifold *m, Vec normal, Vec on_a, Vec on_b, uint32_t feature, double margin) {
-    Vec apart = vsub(on_b, on_a);
-    double separation = vdot(normal, apart);
+    Vec d = vsub(on_b, on_a);
+    double separation = vdot(normal, d);
     m->normal = normal;
     m->gap = separation;
     m->count = separation <= margin;
-    m->point[0] = (ManifoldPoint){vmad(on_a, 0.5, apart), separation, feature};
+    m->point[0] = (ManifoldPoint){vmad(on_a, 0.5, d), separation, feature};
 }
 
 static void between_circles(const Outline *a, const Outline *b, double margin, Manifold *m) {
@@ -85,120 +104,114 @@ static void between_circles(const Outline *a, const Outline *b, double margin, M
 
 /* a is a polygon, b a circle. */
 static void polygon_circle(const Outline *a, const Outline *b, double margin, Manifold *m) {
-    Facing facing = face(a, b, margin + b->radius);
+    Facing f = face(a, b, margin + b->radius);
     Vec centre = b->vertex[0];
-    m->count = 0;
-    if (facing.side < 0) { /* beyond cuts alone: another piece of the shape touches */
-        m->gap = 0;
-        m->normal = vec(0, 1);
+    if (f.side < 0) { /* beyond cuts alone: another piece of the shape touches */
+        apart(m, vec(0, 1), 0);
         return;
     }
-    Vec p = a->vertex[facing.side], q = a->vertex[after(a, facing.side)], n = a->normal[facing.side];
-    m->normal = n;
-    m->gap = facing.separation - b->radius;
-    if (m->gap > margin) return;
-    uint32_t feature = (uint32_t)facing.side;
-    if (facing.separation > 0) {
-        Vec side = vsub(q, p);
-        double along = vdot(vsub(centre, p), side);
-        bool first = along < 0, last = along > vdot(side, side);
-        if (first || last) {
-            Vec end = first ? p : q;
-            double distance = vlength(vsub(centre, end));
-            n = vscale(vsub(centre, end), 1 / distance);
-            one_point(m, n, end, vmad(centre, -b->radius, n), feature, margin);
-            return;
-        }
-        if (a->cut[facing.side]) return;
+    Vec n = a->normal[f.side];
+    if (f.separation - b->radius > margin) {
+        apart(m, n, f.separation - b->radius);
+        return;
     }
-    one_point(m, n, vmad(centre, -facing.separation, n), vmad(centre, -b->radius, n), feature, margin);
+    int32_t end = f.side;
+    Vec p = a->vertex[f.side], side = vsub(a->vertex[after(a, f.side)], p);
+    double along = vdot(vsub(centre, p), side);
+    bool beyond = along > vdot(side, side);
+    if (beyond) end = after(a, f.side);
+    if (f.separation > 0 && (along < 0 || beyond)) {
+        Vec d = vsub(centre, a->vertex[end]);
+        double distance = vlength(d);
+        n = vscale(d, 1 / distance);
+        if (exposed(a, end, n))
+            one_point(m, n, a->vertex[end], vmad(centre, -b->radius, n), (uint32_t)end, margin);
+        else
+            apart(m, n, distance - b->radius);
+    } else if (f.touches) {
+        one_point(m, n, vmad(centre, -f.separation, n), vmad(centre, -b->radius, n), (uint32_t)f.side, margin);
+    } else {
+        apart(m, n, f.separation - b->radius);
+    }
 }
 
-/* The two sides face each other corner to corner: the contact is between the corners.  Whether it was so. */
-static bool corners(Vec p1, Vec q1, Vec p2, Vec q2, uint32_t features[2], double margin, bool flip, Manifold *m) {
-    Vec u = vsub(q1, p1), v = vsub(q2, p2), w = vsub(p2, p1);
-    double uu = vdot(u, u), vv = vdot(v, v);
-    /* side 2 runs against side 1: its end q2 is on p1's hand, its start p2 on q1's */
-    Vec c1, c2;
-    if (vdot(vsub(p2, p1), u) < 0 && vdot(vsub(q2, p1), u) < 0) {
-        c1 = p1;
-        c2 = vdot(vsub(p2, p1), u) > vdot(vsub(q2, p1), u) ? p2 : q2;
-    } else if (vdot(vsub(p2, q1), u) > 0 && vdot(vsub(q2, q1), u) > 0) {
-        c1 = q1;
-        c2 = vdot(vsub(p2, p1), u) < vdot(vsub(q2, p1), u) ? p2 : q2;
+/* The nearest points of two facing sides, one of them or both a corner, where the sides are past each other's end.
+ * Whether they are; `m` is then done. */
+static bool past_end(const Outline *a, int32_t i, const Outline *b, int32_t j, bool flip, double margin, Manifold *m) {
+    int32_t i2 = after(a, i), j2 = after(b, j);
+    Vec p = a->vertex[i], q = a->vertex[i2], u = vsub(q, p);
+    double uu = vdot(u, u), s = vdot(vsub(b->vertex[j], p), u), s2 = vdot(vsub(b->vertex[j2], p), u);
+    int32_t corner_a, corner_b;
+    if (s < 0 && s2 < 0) {
+        corner_a = i;
+        corner_b = s > s2 ? j : j2;
+    } else if (s > uu && s2 > uu) {
+        corner_a = i2;
+        corner_b = s < s2 ? j : j2;
     } else {
         return false;
     }
-    (void)w;
-    if (uu <= 0 || vv <= 0) return false;
-    /* the point of side 2 nearest to the corner must be its end, or the corner faces the side */
-    double t = vdot(vsub(c1, p2), v) / vv;
-    if (t > 0 && t < 1) {
-        Vec on = vmad(p2, t, v);
-        if (vlength(vsub(on, c1)) < vlength(vsub(c2, c1))) c2 = on;
-    }
-    Vec d = vsub(c2, c1);
-    double distance = vlength(d);
+    Vec c = a->vertex[corner_a], d = b->vertex[corner_b], v = vsub(b->vertex[j2], b->vertex[j]);
+    double t = vdot(vsub(c, b->vertex[j]), v), vv = vdot(v, v);
+    bool on_side = t > 0 && t < vv;
+    if (on_side) d = vmad(b->vertex[j], t / vv, v);
+    double distance = vlength(vsub(d, c));
     if (distance <= 0) return false;
-    Vec n = vscale(d, 1 / distance);
-    if (flip)
-        one_point(m, vscale(n, -1), c2, c1, features[1], margin);
+    Vec n = vscale(vsub(d, c), 1 / distance), back = vscale(n, -1);
+    bool touches = exposed(a, corner_a, n) && (on_side ? !is_cut(b, j) : exposed(b, corner_b, back));
+    uint32_t feature = (uint32_t)corner_a | (flip ? FROM_B : 0);
+    if (!touches)
+        apart(m, flip ? back : n, distance);
+    else if (flip)
+        one_point(m, back, d, c, feature, margin);
     else
-        one_point(m, n, c1, c2, features[1], margin);
+        one_point(m, n, c, d, feature, margin);
     return true;
 }
 
-/* a has the side that b faces; `flip`: the caller's pair is (b, a). */
-static void clip(const Outline *a, const Outline *b, Facing facing, bool flip, double margin, Manifold *m) {
-    Vec n = a->normal[facing.side], t = vperp(n); /* t runs along the side: counter-clockwise has the outside right */
-    int32_t i = facing.side, i2 = after(a, i), j = facing.vertex;
+/* The side of a that b faces, and the side of b that faces it, clipped to each other's span.  `flip`: the caller's pair
+ * is (b, a). */
+static void clip(const Outline *a, const Outline *b, Facing f, bool flip, double margin, Manifold *m) {
+    Vec n = a->normal[f.side], t = vperp(n);
+    int32_t i = f.side, i2 = after(a, i), j = f.vertex;
     if (vdot(b->normal[before(b, j)], n) < vdot(b->normal[j], n)) j = before(b, j);
     int32_t j2 = after(b, j);
-    Vec p1 = a->vertex[i], q1 = a->vertex[i2], p2 = b->vertex[j], q2 = b->vertex[j2];
+    if (f.separation > 0 && past_end(a, i, b, j, flip, margin, m)) return;
+    apart(m, flip ? vscale(n, -1) : n, f.separation);
+    if (!f.touches) return;
+    Vec p = a->vertex[i], first = b->vertex[j2], span = vsub(b->vertex[j], first); /* b's side along t */
+    double start = vdot(p, t), end = vdot(a->vertex[i2], t), s = vdot(first, t), s2 = s + vdot(span, t);
     uint32_t mark_a = flip ? FROM_B : 0, mark_b = flip ? 0 : FROM_B;
-    m->normal = flip ? vscale(n, -1) : n;
-    m->gap = facing.separation;
-    m->count = 0;
-    uint32_t features[2] = {mark_a | (uint32_t)i, mark_b | (uint32_t)facing.vertex};
-    if (facing.separation > 0 && corners(p1, q1, p2, q2, features, margin, flip, m)) return;
-    if (a->cut[i]) return;
-    double start = vdot(p1, t), end = vdot(q1, t);
-    Vec ends[2] = {q2, p2}; /* along t */
+    Vec ends[2] = {first, b->vertex[j]};
     uint32_t feature[2] = {mark_b | (uint32_t)j2, mark_b | (uint32_t)j};
-    double at0 = vdot(q2, t), at1 = vdot(p2, t);
-    Vec span = vsub(p2, q2);
-    if (at0 < start && at1 > start) {
-        ends[0] = vmad(q2, (start - at0) / (at1 - at0), span);
+    if (s < start && s2 > start) {
+        ends[0] = vmad(first, (start - s) / (s2 - s), span);
         feature[0] = mark_a | (uint32_t)i;
     }
-    if (at1 > end && at0 < end) {
-        ends[1] = vmad(q2, (end - at0) / (at1 - at0), span);
+    if (s2 > end && s < end) {
+        ends[1] = vmad(first, (end - s) / (s2 - s), span);
         feature[1] = mark_a | (uint32_t)i2;
     }
     for (int32_t k = 0; k < 2; k++) {
-        double separation = vdot(vsub(ends[k], p1), n);
+        double separation = vdot(vsub(ends[k], p), n);
         if (separation > margin) continue;
         m->point[m->count++] = (ManifoldPoint){vmad(ends[k], -0.5 * separation, n), separation, feature[k]};
     }
 }
 
 static void between_polygons(const Outline *a, const Outline *b, double margin, Manifold *m) {
-    m->count = 0;
     Facing of_a = face(a, b, margin);
     if (of_a.separation > margin) {
-        m->normal = a->normal[of_a.side];
-        m->gap = of_a.separation;
+        apart(m, a->normal[of_a.side], of_a.separation);
         return;
     }
     Facing of_b = face(b, a, margin);
     if (of_b.separation > margin) {
-        m->normal = vscale(b->normal[of_b.side], -1);
-        m->gap = of_b.separation;
+        apart(m, vscale(b->normal[of_b.side], -1), of_b.separation);
         return;
     }
-    if (of_a.side < 0 && of_b.side < 0) {
-        m->gap = 0;
-        m->normal = vec(0, 1);
+    if (of_a.side < 0 && of_b.side < 0) { /* across cuts alone: other pieces of the shapes touch */
+        apart(m, vec(0, 1), 0);
         return;
     }
     /* near a tie a keeps the side, so that a resting pair does not change its mind from step to step */
@@ -209,8 +222,6 @@ static void between_polygons(const Outline *a, const Outline *b, double margin, 
         clip(a, b, of_a, false, margin, m);
 }
 
-static void turn_round(Manifold *m) { m->normal = vscale(m->normal, -1); }
-
 void manifold_find(const Outline *a, const Outline *b, double margin, Manifold *m) {
     if (a->count > 1 && b->count > 1) {
         between_polygons(a, b, margin, m);
@@ -218,7 +229,7 @@ void manifold_find(const Outline *a, const Outline *b, double margin, Manifold *
         polygon_circle(a, b, margin, m);
     } else if (b->count > 1) {
         polygon_circle(b, a, margin, m);
-        turn_round(m);
+        m->normal = vscale(m->normal, -1);
     } else {
         between_circles(a, b, margin, m);
     }

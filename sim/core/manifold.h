@@ -11,7 +11,9 @@
 typedef struct Outline {
     const Vec *vertex; /* counter-clockwise */
     const Vec *normal; /* outward unit normal of the side that begins at the vertex */
-    const bool *cut;   /* by side: it is inside the shape that the piece was cut from, and touches nothing */
+    /* Of a piece cut from a larger shape, else NULL: by vertex, the normals of the shape's sides before and after it.
+     * A side of the piece whose normal is not that after its first vertex is a cut: it touches nothing. */
+    const Vec *arriving, *leaving;
     int32_t count;
     double radius;
 } Outline;

@@ -260,7 +260,7 @@ void world_destroy(World *world) {
     free(world->vertex);
     free(world->piece);
     free(world->piece_vertex);
-    free(world->piece_cut);
+    free(world->piece_corner);
     free(world->joint);
     free(world->source_shape);
     free(world->apart);

@@ -65,7 +65,7 @@ typedef struct World {
     Vec *vertex;
     Piece *piece;            /* made by world_decompose */
     Vec *piece_vertex;
-    bool *piece_cut;         /* by piece vertex: the side that begins there is a cut, not part of the outline */
+    int32_t *piece_corner;   /* by piece vertex: which one of World.vertex it is */
     Joint *joint;            /* without those inside a merged body */
     int32_t *source_shape;   /* the shape of each input body */
     uint64_t *apart;         /* sorted keys of the pairs of shapes that do not collide: joined, or let overlap */

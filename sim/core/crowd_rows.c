@@ -4,7 +4,7 @@
  * with the sum clamped (contact: no pull; friction: Coulomb's cone).  Relaxing passes take out the velocity that the
  * bias put in.
  */
-#include "rows.h"
+#include "crowd_rows.h"
 
 static const Soft RIGID = {0, 1, 0};
 

@@ -71,54 +71,24 @@ static const Contact *recall(const Memory *memory, uint64_t key) {
     return NULL;
 }
 
-static void make_outlines(Crowd *crowd, const World *world) {
-    for (int32_t i = 0; i < world->piece_count; i++) {
-        const Piece *piece = &world->piece[i];
-        const Vec *v = world->piece_vertex + piece->first;
-        crowd->outline[i] = (Outline){crowd->vertex + piece->first, crowd->normal + piece->first,
-                                      world->piece_cut + piece->first, piece->count, piece->radius};
-        double swing = 0;
-        for (int32_t k = 0; k < piece->count; k++) {
-            swing = fmax(swing, vlength(v[k]));
-            if (piece->count == 1) continue;
-            Vec side = vsub(v[k + 1 < piece->count ? k + 1 : 0], v[k]);
-            double length = vlength(side);
-            crowd->local_normal[piece->first + k] = vec(side.y / length, -side.x / length);
-        }
-        crowd->swing[i] = swing;
-    }
-}
-
 int touch_create(Crowd *crowd, const World *world) {
-    size_t bodies = (size_t)world->body_count, pieces = (size_t)world->piece_count;
-    size_t vertices = (size_t)world->piece_vertex_count, shapes = (size_t)world->shape_count;
+    size_t bodies = (size_t)world->body_count, pieces = (size_t)world->piece_count, shapes = (size_t)world->shape_count;
     crowd->start = table(bodies, sizeof *crowd->start);
     crowd->placed = table(bodies, sizeof *crowd->placed);
-    crowd->swing = table(pieces, sizeof *crowd->swing);
-    crowd->local_normal = table(vertices, sizeof *crowd->local_normal);
-    crowd->vertex = table(vertices, sizeof *crowd->vertex);
-    crowd->normal = table(vertices, sizeof *crowd->normal);
-    crowd->outline = table(pieces, sizeof *crowd->outline);
     crowd->piece_box = table(pieces, sizeof *crowd->piece_box);
     crowd->shape_box = table(shapes, sizeof *crowd->shape_box);
     crowd->shape_moves = table(shapes, sizeof *crowd->shape_moves);
-    if (!crowd->start || !crowd->placed || !crowd->swing || !crowd->local_normal || !crowd->vertex || !crowd->normal ||
-        !crowd->outline || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves)
+    if (!crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves)
         return SIM_OUT_OF_MEMORY;
     if (sweep_create(&crowd->sweep, world->shape_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (contact_room(crowd, 2 * world->body_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
-    make_outlines(crowd, world);
-    return SIM_OK;
+    return posed_create(&crowd->posed, world);
 }
 
 void touch_destroy(Crowd *crowd) {
     free(crowd->start);
     free(crowd->placed);
-    free(crowd->swing);
-    free(crowd->local_normal);
-    free(crowd->vertex);
-    free(crowd->normal);
-    free(crowd->outline);
+    posed_destroy(&crowd->posed);
     free(crowd->piece_box);
     free(crowd->shape_box);
     free(crowd->shape_moves);
@@ -136,23 +106,8 @@ void touch_place(Crowd *crowd, const World *world, int32_t body) {
     Pose at = crowd->start[body];
     if (m->turned != 0 || m->moved.x != 0 || m->moved.y != 0)
         at = pose(vadd(b->position, m->moved), b->angle + m->turned);
-    for (int32_t s = b->first_shape; s < b->first_shape + b->shape_count; s++) {
-        const Shape *shape = &world->shape[s];
-        for (int32_t p = shape->first_piece; p < shape->first_piece + shape->piece_count; p++) {
-            const Piece *piece = &world->piece[p];
-            for (int32_t k = piece->first; k < piece->first + piece->count; k++) {
-                crowd->vertex[k] = place(at, world->piece_vertex[k]);
-                crowd->normal[k] = turn(at, crowd->local_normal[k]);
-            }
-        }
-    }
+    posed_place(&crowd->posed, world, body, at);
     crowd->placed[body] = crowd->moment;
-}
-
-static Box piece_extent(const Outline *o) {
-    Box box = {o->vertex[0], o->vertex[0]};
-    for (int32_t k = 1; k < o->count; k++) box = box_join(box, (Box){o->vertex[k], o->vertex[k]});
-    return box_grow(box, o->radius);
 }
 
 /* The boxes of a body's pieces now, and those of its shapes over the coming frame. */
@@ -165,9 +120,9 @@ static void find_boxes(Crowd *crowd, const World *world, int32_t body, double dt
         Box box = {0};
         double swing = 0;
         for (int32_t p = shape->first_piece; p < shape->first_piece + shape->piece_count; p++) {
-            crowd->piece_box[p] = piece_extent(&crowd->outline[p]);
+            crowd->piece_box[p] = posed_box(&crowd->posed, p);
             box = p == shape->first_piece ? crowd->piece_box[p] : box_join(box, crowd->piece_box[p]);
-            swing = fmax(swing, crowd->swing[p]);
+            swing = fmax(swing, crowd->posed.swing[p]);
         }
         if (moves) {
             Box there = {vadd(box.low, travel), vadd(box.high, travel)};
@@ -181,7 +136,7 @@ static void find_boxes(Crowd *crowd, const World *world, int32_t body, double dt
 /* How much nearer two bodies' pieces can come along the normal in dt, at their present velocities. */
 static inline double approach(const Crowd *crowd, const Near *n, double dt) {
     const Mover *a = &crowd->mover[n->a], *b = &crowd->mover[n->b];
-    double turning = fabs(a->spin) * crowd->swing[n->piece_a] + fabs(b->spin) * crowd->swing[n->piece_b];
+    double turning = fabs(a->spin) * crowd->posed.swing[n->piece_a] + fabs(b->spin) * crowd->posed.swing[n->piece_b];
     return dt * (turning - vdot(n->normal, vsub(b->velocity, a->velocity)));
 }
 
@@ -198,7 +153,7 @@ static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, c
     p->along_nb = vdot(rb, n);
     p->mass_n = 1 / (m + a->inverse_moment * p->spin_na * p->spin_na + b->inverse_moment * p->spin_nb * p->spin_nb);
     p->mass_t = 1 / (m + a->inverse_moment * p->spin_ta * p->spin_ta + b->inverse_moment * p->spin_tb * p->spin_tb);
-    /* what a mover has done in the frame so far is in the formula of rows.c, and taken off here */
+    /* what a mover has done in the frame so far is in the formula of crowd_rows.c, and taken off here */
     p->separation = found->separation - vdot(vsub(b->moved, a->moved), n) - b->turned * p->spin_nb +
                     a->turned * p->spin_na +
                     0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
@@ -236,7 +191,7 @@ static bool look(Crowd *crowd, World *world, Near *near, double soon, double lat
     if (crowd->placed[near->a] != crowd->moment) touch_place(crowd, world, near->a);
     if (crowd->placed[near->b] != crowd->moment) touch_place(crowd, world, near->b);
     Manifold m;
-    manifold_find(&crowd->outline[near->piece_a], &crowd->outline[near->piece_b], later, &m);
+    manifold_find(&crowd->posed.outline[near->piece_a], &crowd->posed.outline[near->piece_b], later, &m);
     world->profile.pairs++;
     near->normal = m.normal;
     near->gap = m.gap;
@@ -253,7 +208,7 @@ static double skin_of(const World *world, const Near *near) {
 /* An upper bound of how much nearer two bodies come in dt, whatever the direction. */
 static double closing(const Crowd *crowd, const World *world, const Near *near, double dt) {
     const Mover *a = &crowd->mover[near->a], *b = &crowd->mover[near->b];
-    double turning = fabs(a->spin) * crowd->swing[near->piece_a] + fabs(b->spin) * crowd->swing[near->piece_b];
+    double turning = fabs(a->spin) * crowd->posed.swing[near->piece_a] + fabs(b->spin) * crowd->posed.swing[near->piece_b];
     return dt * (vlength(vsub(b->velocity, a->velocity)) + turning) + dt * dt * vlength(world->gravity);
 }
 
