@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from cli.render.outline import is_convex
 from cli.render.style import RGB
 
-__all__ = ["BLOOM", "ONE", "Canvas", "fixed", "paint"]
+__all__ = ["BLOOM", "ONE", "Box", "Canvas", "fixed", "paint"]
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
 Points = NDArray[np.int32]
+Box: TypeAlias = tuple[int, int, int, int]  # left, top, right, bottom [pixels], right and bottom outside
 
 SHIFT = 4
 ONE = 1 << SHIFT
@@ -80,9 +81,12 @@ class Canvas:
         u, v = (np.ascontiguousarray(colors[..., k]) for k in (0, 1))
         return Canvas((brightness, u, v))
 
-    def copy_from(self, other: Canvas) -> None:
-        for mine, its in zip(self.planes, other.planes, strict=True):
-            np.copyto(mine, its)
+    def copy_from(self, other: Canvas, box: Box | None = None) -> None:
+        """Take over another canvas of the same kind, or what it has within a box of even sides."""
+        left, top, right, bottom = box or (0, 0, *self.planes[0].shape[1::-1])
+        for k, (mine, its) in enumerate(zip(self.planes, other.planes, strict=True)):
+            part = np.s_[top >> (k > 0) : bottom >> (k > 0), left >> (k > 0) : right >> (k > 0)]
+            np.copyto(mine[part], its[part])
 
     def views(self, points: Points) -> Iterator[tuple[Bytes, Points, int]]:
         """Every plane with `points` (..., 2) in its own fixed-point coordinates and their bits of fraction.
@@ -121,17 +125,15 @@ class Canvas:
         column, row = column + left, row + top
         if mask.size == 0:
             return
-        for plane, value in zip(self.planes, paint(color, self.is_yuv), strict=True):
-            half = plane.shape[0] < height
-            share: Any = mask
-            if half:
-                share = cv2.resize(
-                    mask, (mask.shape[1] // 2, mask.shape[0] // 2), interpolation=cv2.INTER_AREA
-                )
-            y, x = (row // 2, column // 2) if half else (row, column)
+        halved: Any = mask
+        if self.is_yuv:
+            halved = cv2.resize(mask, (mask.shape[1] // 2, mask.shape[0] // 2), interpolation=cv2.INTER_AREA)
+        for k, (plane, value) in enumerate(zip(self.planes, paint(color, self.is_yuv), strict=True)):
+            share, y, x = (halved, row // 2, column // 2) if k else (mask, row, column)
             at = plane[y : y + share.shape[0], x : x + share.shape[1]]
-            weight = (share / np.float32(255)).reshape(share.shape + (1,) * (plane.ndim - 2))
-            at[:] = np.rint(at + (np.asarray(value, np.float32) - at) * weight).astype(np.uint8)
+            weight = share.astype(np.uint16).reshape(share.shape + (1,) * (plane.ndim - 2))
+            mixed = at * (255 - weight) + weight * np.asarray(value, np.uint16) + np.uint16(127)
+            at[:] = mixed // 255
 
 
 def paint(color: RGB, yuv: bool) -> tuple[Any, ...]:

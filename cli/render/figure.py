@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from cli.render.camera import Camera
-from cli.render.canvas import BLOOM, ONE, Canvas, fixed, paint
+from cli.render.canvas import BLOOM, ONE, SHIFT, Box, Canvas, Points, fixed, paint
 from cli.render.outline import inset, is_convex, segment
 from cli.render.style import RGB, Style, body_colors, mix
 from cli.render.text import lettering
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 __all__ = ["Figure", "Part"]
 
 Array = NDArray[np.float64]
+
+SMOOTH = 4  # pixels that a smoothed edge may reach over the outline: two in the planes of half the resolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +115,7 @@ class Figure:
     def _pivot_radii(self) -> tuple[float, float, float]:
         return 7.0 * self.unit + 0.5, 7.0 * self.unit + 0.5 - self.line, max(2.4 * self.unit, 1.4)
 
-    def place(self, positions: Array, angles: Array) -> NDArray[np.int32]:
+    def place(self, positions: Array, angles: Array) -> Points:
         """Every part's points for bodies at positions (..., bodies, 2) [m] and angles (..., bodies) [rad].
 
         Returns fixed-point coordinates, shape (..., points, 2).
@@ -122,7 +125,45 @@ class Figure:
         world = positions[..., self._owners, :] + np.stack([c * x - s * y, s * x + c * y], axis=-1)
         return fixed(self.camera.pixels(world))
 
-    def fill(self, canvas: Canvas, placed: NDArray[np.int32], fade: float = 0.0) -> None:
+    def visible(self, placed: Points) -> NDArray[np.bool_]:
+        """Which parts are in the picture, shape (..., parts), placed at (..., points, 2)."""
+        if not self.parts:
+            return np.zeros((*placed.shape[:-2], 0), bool)
+        low, high = self._extent(placed)
+        limit = np.array(self.camera.size) * ONE
+        return np.asarray(np.all((high > 0) & (low < limit), axis=-1))
+
+    def _extent(self, placed: Points) -> tuple[Points, Points]:
+        """Least and greatest coordinates of every part, shape (..., parts, 2), smoothed edges included."""
+        starts = [where.start for where in self._slices]
+        around = np.array([part.radius for part in self.parts], np.int32)[:, None] + SMOOTH * ONE
+        low = np.minimum.reduceat(placed, starts, axis=-2) - around
+        return low, np.maximum.reduceat(placed, starts, axis=-2) + around
+
+    def changes(self, placed: Points) -> NDArray[np.bool_]:
+        """Whether each placed frame (n, points, 2) but the first looks different from the one before."""
+        if not self.parts:
+            return np.zeros(len(placed) - 1, bool)
+        starts = [where.start for where in self._slices]
+        moved = np.any(placed[1:] != placed[:-1], axis=2)
+        parts_moved = np.logical_or.reduceat(moved, starts, axis=1)
+        seen = self.visible(placed)
+        return np.asarray(np.any(parts_moved & (seen[1:] | seen[:-1]), axis=1))
+
+    def boxes(self, placed: Points) -> list[Box]:
+        """For each placed frame (n, points, 2) a box of even sides around all parts in the picture."""
+        if not self.parts:
+            return [(0, 0, 0, 0)] * len(placed)
+        limit = np.array(self.camera.size)
+        low, high = (np.clip(x >> SHIFT, 0, limit) for x in self._extent(placed))
+        seen = self.visible(placed)[..., None]
+        low, high = np.where(seen, low, limit).min(axis=1), np.where(seen, high, 0).max(axis=1)
+        corners = np.concatenate([low & ~1, (high + 2) & ~1], axis=1)
+        return [
+            (left, top, max(left, right), max(top, bottom)) for left, top, right, bottom in corners.tolist()
+        ]
+
+    def fill(self, canvas: Canvas, placed: Points, fade: float = 0.0) -> None:
         """Draw the parts where `place` put them, shape (points, 2); `fade` mixes in the paper's colour."""
         import cv2
 
@@ -146,12 +187,9 @@ class Figure:
             self._paints[yuv, fade] = [list(plane) for plane in zip(*paints, strict=True)]
         return self._paints[yuv, fade]
 
-    def clock(self, canvas: Canvas, time: float) -> None:
-        """Write the time in the upper left corner."""
-        self.caption(canvas, f"{time:.1f} s")
-
-    def caption(self, canvas: Canvas, text: str) -> None:
-        self._write(canvas, text, (24 * self.unit, 20 * self.unit), 17)
+    def caption(self, canvas: Canvas, text: str) -> Box:
+        """Write in the upper left corner; returns the box that was written on."""
+        return self._write(canvas, text, (24 * self.unit, 20 * self.unit), 17)
 
     # ------------------------------------------------------------ what stands still
 
@@ -175,12 +213,9 @@ class Figure:
         view = self.scene.view
         if view is None:
             return
-        height, width = canvas.planes[0].shape[:2]
-        mask = np.zeros((height, width), np.uint8)
-        for stroke in sketch.strokes:
-            line = fixed(self.camera.page(stroke.points, view.pixels_per_metre))
-            cv2.polylines(mask, [line], False, 255, max(1, round(self.unit)), cv2.LINE_AA, 4)
-        canvas.blend(mask, (0, 0), self.style.drawn)
+        lines = [fixed(self.camera.page(s.points, view.pixels_per_metre)) for s in sketch.strokes]
+        thick = max(1, round(self.unit))
+        cv2.polylines(canvas.planes[0], lines, False, self.style.drawn[::-1], thick, cv2.LINE_AA, SHIFT)
 
     def _draw_anchored(self, canvas: Canvas, k: int, body: Body) -> None:
         """A pale body with the hatching that engineers draw for what is fixed."""
@@ -190,14 +225,27 @@ class Figure:
         canvas.polygon(fixed(inset(outline, BLOOM)), edge)
         inner = fixed(inset(outline, BLOOM + self.line))
         canvas.polygon(inner, mix(color, paper, 0.72))
-        height, width = canvas.planes[0].shape[:2]
-        mask = Canvas((np.zeros((height, width), np.uint8),))
-        _fill_mask(mask, inner)
-        row, column = np.ogrid[:height, :width]
+        self._hatch(canvas, inner, mix(color, self.style.ink, 0.12))
+
+    def _hatch(self, canvas: Canvas, outline: Points, color: RGB) -> None:
+        """Stripes at 45 degrees within an outline (fixed-point)."""
+        import cv2
+
+        width, height = self.camera.size
+        left, top = np.clip(outline.min(axis=0) // ONE - 1, 0, (width, height)).tolist()
+        right, bottom = np.clip(outline.max(axis=0) // ONE + 2, 0, (width, height)).tolist()
+        if right <= left or bottom <= top:
+            return
+        mask = np.zeros((bottom - top, right - left), np.uint8)
+        cv2.fillPoly(mask, [outline - np.array([left, top], np.int32) * ONE], 255, cv2.LINE_AA, SHIFT)
         period = 11.0 * self.unit
-        from_stripe = np.abs((row + column + 0.0) / math.sqrt(2) % period - period / 2)
-        stripes = np.clip(0.75 * self.unit + 0.5 - from_stripe, 0, 1)
-        canvas.blend((mask.planes[0] * stripes).astype(np.uint8), (0, 0), mix(color, self.style.ink, 0.12))
+        diagonal = np.arange(left + top, right + bottom) / math.sqrt(2)
+        from_stripe = np.abs(diagonal % period - period / 2)
+        profile = (np.clip(0.75 * self.unit + 0.5 - from_stripe, 0, 1) * 255).astype(np.uint8)
+        # A pixel's stripe follows from its row plus its column: rows of the profile, each one further on.
+        stripes = sliding_window_view(profile[: sum(mask.shape) - 1], mask.shape[1])
+        striped: Any = cv2.multiply(mask, np.ascontiguousarray(stripes), scale=1 / 255)
+        canvas.blend(striped, (left, top), color)
 
     def _draw_support(self, canvas: Canvas, joint: Joint) -> None:
         """A pivot on the background stands on the support of engineering drawings, a triangle."""
@@ -250,9 +298,12 @@ class Figure:
     def _line(self, canvas: Canvas, a: Array, b: Array, width: float, color: RGB) -> None:
         canvas.polygon(fixed(segment(a, b, max(width - 2 * BLOOM, 0.3))), color)
 
-    def _write(self, canvas: Canvas, text: str, corner: tuple[float, float], height: float) -> None:
-        at = (2 * round(corner[0] / 2), 2 * round(corner[1] / 2))
-        canvas.blend(lettering(text, max(8, round(height * self.unit))), at, self.style.ink)
+    def _write(self, canvas: Canvas, text: str, corner: tuple[float, float], height: float) -> Box:
+        x, y = (2 * round(c / 2) for c in corner)
+        mask = lettering(text, max(8, round(height * self.unit)))
+        canvas.blend(mask, (x, y), self.style.ink)
+        right, bottom = x + mask.shape[1], y + mask.shape[0]
+        return (x, y, min(right, self.camera.size[0]), min(bottom, self.camera.size[1]))
 
 
 def round_length(metres: float) -> float:
@@ -266,9 +317,3 @@ def _length(metres: float) -> str:
         if metres >= size * (1 - 1e-9):
             return f"{metres / size:g} {unit}"
     return f"{metres:g} m"
-
-
-def _fill_mask(mask: Canvas, points: Any) -> None:
-    import cv2
-
-    cv2.fillPoly(mask.planes[0], [points], 255, cv2.LINE_AA, 4)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cli.render.canvas import ONE, Canvas
+from cli.render.canvas import Canvas
 from cli.render.figure import Figure, round_length
+from cli.render.video import changes
 
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
@@ -36,27 +36,21 @@ def strobe(figure: Figure, motion: Trajectory) -> Canvas:
     """
     canvas = Canvas.plain(figure.camera.size, figure.style.paper)
     canvas.copy_from(figure.background)
-    placed = figure.place(motion.positions, motion.angles)
-    end = _last_change(figure, placed)
+    end = _last_change(figure, motion)
     if end == 0:
-        figure.fill(canvas, placed[0])
+        figure.fill(canvas, figure.place(motion.positions[0], motion.angles[0]))
         figure.caption(canvas, "at rest")
         return canvas
     interval = float(motion.times[1] - motion.times[0])
     step = max(1, round(round_length(end * interval / FLASHES) / interval))
     for k in range(0, end, step):
-        figure.fill(canvas, placed[k], FADE)
-    figure.fill(canvas, placed[end])
+        figure.fill(canvas, figure.place(motion.positions[k], motion.angles[k]), FADE)
+    figure.fill(canvas, figure.place(motion.positions[end], motion.angles[end]))
     figure.caption(canvas, f"every {step * interval:.3g} s, to {motion.times[end]:.1f} s")
     return canvas
 
 
-def _last_change(figure: Figure, placed: NDArray[np.int32]) -> int:
-    """The last sample that shows something in the picture that was not there before."""
-    if placed.shape[1] == 0:
-        return 0
-    moved = np.any(placed[1:] != placed[:-1], axis=2)
-    after = placed[1:] // ONE
-    seen = np.all((after >= 0) & (after < figure.camera.size), axis=2)
-    changes = np.flatnonzero((moved & seen).any(axis=1))
-    return int(changes[-1]) + 1 if len(changes) else 0
+def _last_change(figure: Figure, motion: Trajectory) -> int:
+    """The last sample that shows something that was not there before."""
+    found = np.flatnonzero(changes(figure, motion, len(motion)))
+    return int(found[-1]) if len(found) else 0

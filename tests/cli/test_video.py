@@ -14,7 +14,7 @@ from cli.main import main
 from cli.render.camera import fit
 from cli.render.figure import Figure
 from cli.render.style import CLEAN
-from cli.render.video import write_video
+from cli.render.video import Sheet, changes, clock, drawn, write_video
 from sim.scene import Scene
 from sim.trajectory import Trajectory
 
@@ -98,3 +98,59 @@ def test_bodies_that_leave_are_noted(scene_file: Path, capsys: pytest.CaptureFix
     assert main(["simulate", str(scene_file), "-o", str(out), "--duration", "4", "--size", "64x64"]) == 0
     # The ball's left side passes the page's right side (4 m) at (4 - 0.75 + 0.5) / 2 s.
     assert capsys.readouterr().err.splitlines() == ["note: ball leaves the picture at 1.9 s"]
+
+
+def spinning(scene: Scene) -> Scene:
+    """Everything that moves turns as well, so that every part changes."""
+    for body in scene.bodies[1:]:
+        body.angular_velocity = 2.0
+    return scene
+
+
+def test_redrawing_only_what_changed_leaves_no_trace(scene: Scene, straight: Straight) -> None:
+    figure = Figure(spinning(scene), fit(scene, (640, 480)), CLEAN)
+    motion = straight(scene, duration=1.5, fps=20)
+    sheets = [Sheet(av.VideoFrame(640, 480, "yuv420p")) for _ in range(2)]
+    numbers = []
+    for k, sheet in drawn(figure, motion, 20, lambda: sheets[len(numbers) % 2]):
+        numbers.append(k)
+        fresh = figure.background.to_yuv()
+        figure.fill(fresh, figure.place(motion.positions[k], motion.angles[k]))
+        figure.caption(fresh, f"{k // 2 / 10:.1f} s")
+        for mine, its in zip(sheet.canvas.planes, fresh.planes, strict=True):
+            assert np.array_equal(mine, its), f"frame {k}"
+    assert numbers == list(range(30))
+
+
+def test_frames_at_rest_are_not_drawn_again(scene: Scene, straight: Straight, tmp_path: Path) -> None:
+    """One second of motion, then seven of rest: a frame for every full second, and the video lasts as long."""
+    motion = straight(scene, duration=8.0, fps=20)
+    motion.positions[20:] = motion.positions[20]
+    out = tmp_path / "run.mp4"
+    write_video(str(out), Figure(scene, fit(scene, (640, 480)), CLEAN), motion, 20)
+    container, _, times = decode(out)
+    stream = container.streams.video[0]
+    assert times == pytest.approx([*(k / 20 for k in range(21)), 2, 3, 4, 5, 6, 7, 7.95])
+    assert float(stream.duration * stream.time_base) == pytest.approx(8)
+
+
+def test_bodies_out_of_the_picture_make_no_new_frames(scene: Scene, straight: Straight) -> None:
+    figure = Figure(scene, fit(scene, (640, 480)), CLEAN)
+    motion = straight(scene, duration=8.0, fps=20)
+    changed = changes(figure, motion, 160)
+    last = int(np.flatnonzero(changed)[-1])
+    assert last / 20 == pytest.approx((4 - 0.75 + 0.5) / 2, abs=0.1)
+    assert changed[: last + 1].all()
+
+
+def test_the_clock_counts_tenths_in_motion_and_seconds_at_rest() -> None:
+    changed = np.ones(100, bool)
+    assert clock(changed, 20)[::20] == ["0.0 s", "1.0 s", "2.0 s", "3.0 s", "4.0 s"]
+    assert clock(changed, 20)[3] == "0.1 s"
+    changed[31:91] = False
+    texts = clock(changed, 20)
+    assert texts[30:40] == ["1.5 s"] * 10
+    assert texts[40:60] == ["2.0 s"] * 20
+    assert texts[80:91] == ["4.0 s"] * 11
+    assert texts[92] == "4.6 s"
+    assert clock(np.array([True, False, False, True]), 20) == ["0.0 s", "0.0 s", "0.1 s", "0.1 s"]
