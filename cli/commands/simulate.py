@@ -103,6 +103,7 @@ def run(options: argparse.Namespace) -> int:
             tolerance=options.tolerance,
             engine=options.engine,
         )
+        _check_finite(motion)
         with Outputs() as files:
             for target in outputs:
                 _write(files, target, loaded, motion, options, progress)
@@ -140,6 +141,15 @@ def _write(
         files.stage(target), figure, motion, options.fps, lambda done: progress.say(f"drawing {target}", done)
     )
     _tell_what_left(outside(scene, motion, camera))
+
+
+def _check_finite(motion: Trajectory) -> None:
+    import numpy as np
+
+    lost = np.argwhere(~np.isfinite(motion.positions).all(axis=2))
+    if len(lost):
+        sample, body = lost[0]
+        raise RuntimeError(f"the engine lost {motion.body_ids[body]} at {motion.times[sample]:g} s")
 
 
 def _tell_what_left(lost: list[tuple[str, float]]) -> None:

@@ -25,6 +25,7 @@ Box: TypeAlias = tuple[int, int, int, int]  # left, top, right, bottom [pixels],
 
 SHIFT = 4
 ONE = 1 << SHIFT
+FAR = 1 << 26  # nothing is drawn farther out, where cv2's integers would run over
 
 # cv2's anti-aliased fills reach this far over the outline [pixels] (measured: 0.59 to 0.77, by direction);
 # whatever is filled is drawn smaller by it.
@@ -39,7 +40,7 @@ _UV = np.array([[112.0, -74.203, -37.797, 128 * 255], [-18.214, -93.786, 112.0, 
 
 def fixed(pixels: Array) -> Points:
     """Points [pixels], a pixel's centre at a half, as fixed-point coordinates."""
-    return np.rint((pixels - 0.5) * ONE).astype(np.int32, order="C")
+    return np.rint(np.clip((pixels - 0.5) * ONE, -FAR, FAR)).astype(np.int32, order="C")
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,12 @@ import io
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from cli.main import main
+from sim.trajectory import Trajectory
 
 
 def stderr_of(capsys: pytest.CaptureFixture[str]) -> list[str]:
@@ -170,3 +172,20 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     for command in ("simulate", "recognize", "bench"):
         assert main([command, "--help"]) == 0
         assert command in capsys.readouterr().out
+
+
+def test_a_motion_that_is_not_finite_is_not_drawn(
+    scene_file: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from sim.engine import simulate
+
+    def lose(*arguments: Any, **options: Any) -> Trajectory:
+        motion = simulate(*arguments, **options)
+        motion.positions[2:, 1] = float("nan")
+        return motion
+
+    monkeypatch.setattr("sim.engine.simulate", lose)
+    out = scene_file.parent / "run.mp4"
+    assert main(["simulate", str(scene_file), "-o", str(out), "--fps", "4"]) == 1
+    assert stderr_of(capsys)[0].endswith("the engine lost ball at 0.5 s")
+    assert not out.exists()

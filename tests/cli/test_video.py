@@ -123,7 +123,7 @@ def test_redrawing_only_what_changed_leaves_no_trace(scene: Scene, straight: Str
 
 
 def test_frames_at_rest_are_not_drawn_again(scene: Scene, straight: Straight, tmp_path: Path) -> None:
-    """One second of motion, then seven of rest: a frame for every full second, and the video lasts as long."""
+    """One second of motion, seven of rest: a frame for every full second, and the video lasts as long."""
     motion = straight(scene, duration=8.0, fps=20)
     motion.positions[20:] = motion.positions[20]
     out = tmp_path / "run.mp4"
