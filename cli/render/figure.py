@@ -270,6 +270,8 @@ class Figure:
         u, ink = self.unit, mix(self.style.ink, self.style.paper, 0.15)
         left, bottom = 26 * u, height - 24 * u
         right = left + metres * self.camera.scale
+        plate = np.full((round(48 * u), round(right - left + 28 * u)), 200, np.uint8)
+        canvas.blend(plate, (round(left - 14 * u), round(bottom - 36 * u)), self.style.paper)
         self._line(canvas, np.array([left, bottom]), np.array([right, bottom]), self.line, ink)
         for x in (left, right):
             self._line(canvas, np.array([x, bottom - 5 * u]), np.array([x, bottom + 5 * u]), self.line, ink)

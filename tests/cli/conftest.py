@@ -35,7 +35,7 @@ SCENE: dict[str, Any] = {
         {
             "id": "box",
             "shape": {"type": "rectangle", "size": [0.8, 0.8]},
-            "position": [3, -0.8],
+            "position": [3, -0.45],
             "color": "#ff0000",
         },
     ],

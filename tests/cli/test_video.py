@@ -77,7 +77,7 @@ def test_bodies_are_where_and_what_colour_they_should_be(
         assert np.abs(ball - BLUE).max() < 45, f"ball at {time} s: {ball}"
         if x - 90 > 0:
             assert np.abs(picture[round(y), round(x - 90)].astype(int) - PAPER).max() < 12
-        box = picture[round(0.8 * 160), 3 * 160].astype(int)
+        box = picture[round(0.45 * 160), 3 * 160].astype(int)
         assert np.abs(box - RED).max() < 45, f"box at {time} s: {box}"
         left = int(np.flatnonzero(np.abs(picture[round(y)].astype(int) - PAPER).max(axis=1) > 100)[0])
         assert left == pytest.approx(max(x - 80, 0), abs=1.5)
