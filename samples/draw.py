@@ -20,7 +20,6 @@ from page import HEIGHT, WIDTH, Page, Point
 SCALE = WIDTH / 10  # pixels a metre
 
 MACHINES: dict[str, Callable[[Page], None]] = {}
-AT_REST = {"stack", "billiard", "arch"}  # nothing in these moves
 
 
 def machine(draw: Callable[[Page], None]) -> Callable[[Page], None]:
