@@ -85,6 +85,7 @@ static void substep(Crowd *crowd, World *world, double left, double dt) {
     Soft hinge = soft(2 * STIFFNESS / dt, 5, dt);
     double threshold = 4 * dt * vlength(world->gravity);
     bool found;
+    touch_refresh(crowd, world, left, threshold);
     accelerate(crowd, world, dt);
     contacts_measure(crowd->contact, crowd->contact_count, mover, threshold);
     touch_near(crowd, world, left, dt, threshold, &found);
@@ -119,7 +120,7 @@ static void store(Crowd *crowd, World *world) {
     for (int32_t i = 0; i < crowd->pivot_count; i++) crowd->joint_impulse[crowd->pivot_joint[i]] = crowd->pivot[i].impulse;
 }
 
-static int frame(Crowd *crowd, World *world, double dt, double tolerance) {
+static int frame(Crowd *crowd, World *world, double dt) {
     int32_t substeps = (int32_t)ceil(SUBSTEPS * dt / FRAME - 1e-9);
     if (substeps < 1) substeps = 1;
     double h = dt / substeps;
@@ -129,7 +130,7 @@ static int frame(Crowd *crowd, World *world, double dt, double tolerance) {
     touch_pivots(crowd);
     for (int32_t k = 0; k < substeps; k++) substep(crowd, world, dt - k * h, h);
     store(crowd, world);
-    rest_update(crowd, world, dt, tolerance);
+    rest_update(crowd, world, dt);
     return SIM_OK;
 }
 
@@ -139,10 +140,14 @@ static void release(Crowd *crowd, World *world) {
 }
 
 int crowd_step(Crowd *crowd, World *world, double dt, double tolerance) {
+    bool any = false;
+    for (int32_t i = 0; i < world->body_count && !any; i++) any = crowd_moves(world, i);
+    if (!any) return SIM_OK;
+    crowd->tolerance = tolerance;
     int32_t frames = (int32_t)ceil(dt / FRAME - 1e-6);
     if (frames < 1) frames = 1;
     for (int32_t k = 0; k < frames; k++) {
-        int status = frame(crowd, world, dt / frames, tolerance);
+        int status = frame(crowd, world, dt / frames);
         if (status != SIM_OK) return status;
     }
     release(crowd, world);

@@ -24,6 +24,7 @@ typedef struct Memory {
 } Memory;
 
 struct Crowd {
+    double tolerance;
     int32_t body_count, shape_count, piece_count;
     Mover *mover;        /* by body */
     Pose *start;         /* by body: when the frame began */
@@ -49,6 +50,7 @@ struct Crowd {
     int32_t *island;     /* by body: union-find */
     double *island_time;
     int32_t *ring;       /* by body: the next one that was put to rest with it */
+    bool *roused;        /* by body: woken in this frame */
     bool *touched;       /* by body: has a contact, a joint, or something near */
 };
 
@@ -59,6 +61,7 @@ int touch_create(Crowd *crowd, const World *world);
 void touch_destroy(Crowd *crowd);
 void touch_place(Crowd *crowd, const World *world, int32_t body);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
+void touch_refresh(Crowd *crowd, World *world, double left, double threshold);
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
 void touch_advance(Crowd *crowd, double substep);
 
@@ -67,6 +70,7 @@ int rest_create(Crowd *crowd, const World *world);
 void rest_destroy(Crowd *crowd);
 void rest_wake(Crowd *crowd, World *world, int32_t body);
 bool rest_wake_joined(Crowd *crowd, World *world);
-void rest_update(Crowd *crowd, World *world, double dt, double tolerance);
+bool rest_rouses(const Crowd *crowd, const World *world, int32_t body);
+void rest_update(Crowd *crowd, World *world, double dt);
 
 #endif

@@ -19,8 +19,9 @@ int rest_create(Crowd *crowd, const World *world) {
     crowd->island_time = calloc(n, sizeof *crowd->island_time);
     crowd->ring = calloc(n, sizeof *crowd->ring);
     crowd->touched = calloc(n, sizeof *crowd->touched);
+    crowd->roused = calloc(n, sizeof *crowd->roused);
     if (!crowd->still_position || !crowd->still_angle || !crowd->still_time || !crowd->island || !crowd->island_time ||
-        !crowd->ring || !crowd->touched)
+        !crowd->ring || !crowd->touched || !crowd->roused)
         return SIM_OUT_OF_MEMORY;
     for (int32_t i = 0; i < world->body_count; i++) crowd->ring[i] = i;
     return SIM_OK;
@@ -34,6 +35,22 @@ void rest_destroy(Crowd *crowd) {
     free(crowd->island_time);
     free(crowd->ring);
     free(crowd->touched);
+    free(crowd->roused);
+}
+
+/* How far a body may move in STILL_TIME and be still.  Without gravity nothing presses bodies together: what drifts goes
+ * on drifting. */
+static double still_distance(const World *world, const Body *body, double tolerance) {
+    bool pulled = world->gravity.x != 0 || world->gravity.y != 0;
+    return pulled ? fmax(STILL_SHARE * body->reach, 0.1 * tolerance) : 1e-9 * body->reach;
+}
+
+/* Whether a body is too fast to come to rest, or was woken in this frame: it wakes what it touches. */
+bool rest_rouses(const Crowd *crowd, const World *world, int32_t body) {
+    const Body *b = &world->body[body];
+    if (b->mode != MODE_CROWD) return false;
+    double speed = vlength(b->velocity) + b->reach * fabs(b->spin);
+    return crowd->roused[body] || speed * STILL_TIME > still_distance(world, b, crowd->tolerance);
 }
 
 /* Wake a body and all that were put to rest with it. */
@@ -44,6 +61,7 @@ void rest_wake(Crowd *crowd, World *world, int32_t body) {
         crowd->ring[at] = at;
         if (world->body[at].mode == MODE_REST) world->body[at].mode = MODE_CROWD;
         crowd->still_time[at] = 0;
+        crowd->roused[at] = true;
         at = next;
     } while (at != body);
 }
@@ -95,13 +113,11 @@ static void find_islands(Crowd *crowd, const World *world) {
     }
 }
 
-static void update_still(Crowd *crowd, const World *world, double dt, double tolerance) {
-    bool pulled = world->gravity.x != 0 || world->gravity.y != 0;
+static void update_still(Crowd *crowd, const World *world, double dt) {
     for (int32_t i = 0; i < world->body_count; i++) {
         const Body *body = &world->body[i];
         if (body->mode != MODE_CROWD) continue;
-        /* without gravity nothing presses bodies together: what drifts goes on drifting */
-        double allowed = pulled ? fmax(STILL_SHARE * body->reach, 0.1 * tolerance) : 1e-9 * body->reach;
+        double allowed = still_distance(world, body, crowd->tolerance);
         double moved = vlength(vsub(body->position, crowd->still_position[i])) +
                        body->reach * fabs(body->angle - crowd->still_angle[i]);
         if (moved > allowed || crowd->still_time[i] == 0) {
@@ -113,8 +129,8 @@ static void update_still(Crowd *crowd, const World *world, double dt, double tol
     }
 }
 
-void rest_update(Crowd *crowd, World *world, double dt, double tolerance) {
-    update_still(crowd, world, dt, tolerance);
+void rest_update(Crowd *crowd, World *world, double dt) {
+    update_still(crowd, world, dt);
     find_islands(crowd, world);
     for (int32_t i = 0; i < world->body_count; i++) crowd->island_time[i] = INFINITY;
     for (int32_t i = 0; i < world->body_count; i++) {

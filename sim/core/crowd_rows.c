@@ -97,6 +97,15 @@ void contacts_solve(Contact *contact, int32_t count, Mover *mover, Soft free, So
     }
 }
 
+/* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
+static inline void solve_rolling(const Contact *c, Mover *a, Mover *b) {
+    double normal = c->point[0].impulse_n + (c->count > 1 ? c->point[1].impulse_n : 0), most = c->rolling * normal;
+    double wanted = (a->spin - b->spin) / (a->inverse_moment + b->inverse_moment);
+    wanted = wanted > most ? most : wanted < -most ? -most : wanted;
+    a->spin -= a->inverse_moment * wanted;
+    b->spin += b->inverse_moment * wanted;
+}
+
 void contacts_relax(Contact *contact, int32_t count, Mover *mover, double dt) {
     double inverse_dt = 1 / dt;
     for (int32_t i = 0; i < count; i++) {
@@ -109,6 +118,7 @@ void contacts_relax(Contact *contact, int32_t count, Mover *mover, double dt) {
         }
         Vec t = vperp(c->normal);
         for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
+        if (c->rolling > 0) solve_rolling(c, a, b);
     }
 }
 

@@ -39,9 +39,13 @@ typedef struct Contact {
     int32_t a, b;       /* movers */
     int32_t count;
     int32_t walled;     /* one of the two cannot move */
+    double slack;       /* how far the pair may shift before its points are found anew [m] */
     Vec normal;         /* from a to b */
     double friction, elasticity;
     double push;        /* the fastest that an overlap is pushed apart [m/s] */
+    double rolling;     /* lever of the rolling resistance [m]; 0: none */
+    double turned;      /* of b against a when the points were found, in this frame */
+    Vec moved;          /* likewise */
     uint64_t key;       /* the pieces */
     Point point[2];
 } Contact;

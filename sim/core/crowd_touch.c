@@ -5,6 +5,8 @@
 #include "crowd_parts.h"
 
 static const double SKIN = 1e-3; /* of the smaller reach: as near as that counts as touching */
+static const double MORE = 0.05; /* of the smaller reach: a contact's other end comes with it when it is as near as that */
+static const double TURN = 0.03; /* [rad]: a pair that has turned so far in the frame is looked at again */
 
 static void *table(size_t count, size_t size) { return calloc(count + 1, size); }
 
@@ -159,40 +161,71 @@ static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, c
                     0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
 }
 
+static double smaller_reach(const World *world, int32_t piece_a, int32_t piece_b) {
+    return fmin(world->shape[world->piece[piece_a].shape].reach, world->shape[world->piece[piece_b].shape].reach);
+}
+
+/* The points of a contact from its manifold, with the impulses that the same points had in `old`. */
+static void set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Contact *old) {
+    const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
+    Vec at_a = vadd(world->body[c->a].position, a->moved), at_b = vadd(world->body[c->b].position, b->moved);
+    Point last[2];
+    int32_t last_count = old ? old->count : 0;
+    for (int32_t l = 0; l < last_count; l++) last[l] = old->point[l];
+    c->count = m->count;
+    c->normal = m->normal;
+    c->turned = b->turned - a->turned;
+    c->moved = vsub(b->moved, a->moved);
+    for (int32_t k = 0; k < m->count; k++) {
+        fill_point(&c->point[k], &m->point[k], c, a, b, at_a, at_b);
+        for (int32_t l = 0; l < last_count; l++)
+            if (last[l].feature == m->point[k].feature) {
+                c->point[k].impulse_n = last[l].impulse_n;
+                c->point[k].impulse_t = last[l].impulse_t;
+                c->point[k].approach = last[l].approach;
+            }
+    }
+}
+
+/* Bodies this slow come to rest by rolling resistance, as real ones do: without it a box rocks on a ball for ever. */
+static bool slow(const World *world, int32_t body) {
+    static const double SLOW = 0.1; /* of the speed of falling by its own reach */
+    const Body *b = &world->body[body];
+    double limit = SLOW * SLOW * vlength(world->gravity) * b->reach;
+    return vdot(b->velocity, b->velocity) + b->spin * b->spin * b->reach * b->reach <= limit;
+}
+
 static void add_contact(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
+    static const double PUSH = 20, SLACK = 0.05, ROLLING = 2e-3; /* per second, of the smaller reach, of it */
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
-    const Mover *a = &crowd->mover[near->a], *b = &crowd->mover[near->b];
+    double reach = smaller_reach(world, near->piece_a, near->piece_b);
     Contact *c = &crowd->contact[crowd->contact_count++];
     c->a = near->a;
     c->b = near->b;
-    c->count = m->count;
-    c->walled = a->inverse_mass == 0 || b->inverse_mass == 0;
-    c->normal = m->normal;
+    c->walled = crowd->mover[near->a].inverse_mass == 0 || crowd->mover[near->b].inverse_mass == 0;
     c->friction = pair_friction(sa, sb);
     c->elasticity = pair_elasticity(sa, sb);
-    c->push = 20 * fmin(sa->reach, sb->reach);
+    c->push = PUSH * reach;
+    c->slack = SLACK * reach;
+    c->rolling = slow(world, near->a) && slow(world, near->b) ? ROLLING * reach * (c->friction < 1 ? c->friction : 1) : 0;
     c->key = (uint64_t)(uint32_t)near->piece_a << 32 | (uint32_t)near->piece_b;
-    const Contact *old = recall(&crowd->memory, c->key);
-    Vec at_a = vadd(world->body[near->a].position, a->moved), at_b = vadd(world->body[near->b].position, b->moved);
-    for (int32_t k = 0; k < m->count; k++) {
-        fill_point(&c->point[k], &m->point[k], c, a, b, at_a, at_b);
-        for (int32_t l = 0; old && l < old->count; l++)
-            if (old->point[l].feature == m->point[k].feature) {
-                c->point[k].impulse_n = old->point[l].impulse_n;
-                c->point[k].impulse_t = old->point[l].impulse_t;
-            }
-    }
+    set_points(crowd, world, c, m, recall(&crowd->memory, c->key));
+}
+
+static void find_manifold(Crowd *crowd, World *world, int32_t piece_a, int32_t piece_b, int32_t a, int32_t b, double margin,
+                          Manifold *m) {
+    if (crowd->placed[a] != crowd->moment) touch_place(crowd, world, a);
+    if (crowd->placed[b] != crowd->moment) touch_place(crowd, world, b);
+    manifold_find(&crowd->posed.outline[piece_a], &crowd->posed.outline[piece_b], margin, m);
+    world->profile.pairs++;
 }
 
 /* Look at a pair closely. Whether it became a contact: it may touch within `soon` metres of approach; the points of it that
  * may touch within `later` come with it. */
 static bool look(Crowd *crowd, World *world, Near *near, double soon, double later) {
-    if (crowd->placed[near->a] != crowd->moment) touch_place(crowd, world, near->a);
-    if (crowd->placed[near->b] != crowd->moment) touch_place(crowd, world, near->b);
     Manifold m;
-    manifold_find(&crowd->posed.outline[near->piece_a], &crowd->posed.outline[near->piece_b], later, &m);
-    world->profile.pairs++;
+    find_manifold(crowd, world, near->piece_a, near->piece_b, near->a, near->b, later, &m);
     near->normal = m.normal;
     near->gap = m.gap;
     if (m.count == 0 || m.gap > soon) return false;
@@ -201,8 +234,7 @@ static bool look(Crowd *crowd, World *world, Near *near, double soon, double lat
 }
 
 static double skin_of(const World *world, const Near *near) {
-    return SKIN * fmin(world->shape[world->piece[near->piece_a].shape].reach,
-                       world->shape[world->piece[near->piece_b].shape].reach);
+    return SKIN * smaller_reach(world, near->piece_a, near->piece_b);
 }
 
 /* An upper bound of how much nearer two bodies come in dt, whatever the direction. */
@@ -212,19 +244,27 @@ static double closing(const Crowd *crowd, const World *world, const Near *near, 
     return dt * (vlength(vsub(b->velocity, a->velocity)) + turning) + dt * dt * vlength(world->gravity);
 }
 
+/* Whether a body wakes a resting one at this distance: a fast one that may hit it, or one just woken that touches it. */
+static bool wakes(const Crowd *crowd, const World *world, int32_t body, double gap, double skin) {
+    return rest_rouses(crowd, world, body) && (gap <= skin || !crowd->roused[body]);
+}
+
 static int consider(Crowd *crowd, World *world, Near near, double dt, double substep, bool *woke) {
     if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (contact_room(crowd, crowd->contact_count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     double skin = skin_of(world, &near), later = closing(crowd, world, &near, dt) + skin;
+    double more = MORE * smaller_reach(world, near.piece_a, near.piece_b);
     double soon = closing(crowd, world, &near, substep) + skin;
-    bool contact = look(crowd, world, &near, soon, later);
+    bool contact = look(crowd, world, &near, soon, later + more);
     if (near.gap > later) return SIM_OK;
     if (!contact) crowd->near[crowd->near_count++] = near;
     crowd->touched[near.a] = crowd->touched[near.b] = true;
-    for (int32_t side = 0; side < 2; side++) {
-        int32_t body = side ? near.b : near.a;
-        if (world->body[body].mode != MODE_REST) continue;
-        rest_wake(crowd, world, body);
+    if (world->body[near.a].mode == MODE_REST && wakes(crowd, world, near.b, near.gap, skin)) {
+        rest_wake(crowd, world, near.a);
+        *woke = true;
+    }
+    if (world->body[near.b].mode == MODE_REST && wakes(crowd, world, near.a, near.gap, skin)) {
+        rest_wake(crowd, world, near.b);
         *woke = true;
     }
     return SIM_OK;
@@ -279,6 +319,7 @@ int touch_frame(Crowd *crowd, World *world, double dt, double substep) {
     crowd->moment++;
     remember(crowd);
     index_memory(&crowd->memory);
+    for (int32_t i = 0; i < world->body_count; i++) crowd->roused[i] = false;
     bool woke;
     do {
         woke = rest_wake_joined(crowd, world);
@@ -308,6 +349,22 @@ int touch_frame(Crowd *crowd, World *world, double dt, double substep) {
     return SIM_OK;
 }
 
+/* Find the points anew of contacts whose bodies have turned or shifted a good deal since. */
+void touch_refresh(Crowd *crowd, World *world, double left, double threshold) {
+    for (int32_t i = 0; i < crowd->contact_count; i++) {
+        Contact *c = &crowd->contact[i];
+        const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
+        Vec shifted = vsub(vsub(b->moved, a->moved), c->moved);
+        double turned = b->turned - a->turned - c->turned;
+        if (fabs(turned) < TURN && fabs(shifted.x) + fabs(shifted.y) < c->slack) continue;
+        Near near = {(int32_t)(c->key >> 32), (int32_t)(c->key & 0xffffffffu), c->a, c->b, c->normal, 0};
+        Manifold m;
+        find_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b, closing(crowd, world, &near, left) + c->slack, &m);
+        set_points(crowd, world, c, &m, c);
+        contacts_measure(c, 1, crowd->mover, threshold);
+    }
+}
+
 /* In a substep: the near pairs that may touch in it at the present velocities become contacts. */
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found) {
     int32_t kept = 0, first = crowd->contact_count;
@@ -315,7 +372,8 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
         Near near = crowd->near[i];
         if (near.gap - approach(crowd, &near, substep) <= 0) {
             double soon = closing(crowd, world, &near, substep);
-            if (look(crowd, world, &near, soon, closing(crowd, world, &near, left) + soon)) continue;
+            if (look(crowd, world, &near, soon, closing(crowd, world, &near, left) + soon + MORE * smaller_reach(world, near.piece_a, near.piece_b)))
+                continue;
         }
         crowd->near[kept++] = near;
     }
