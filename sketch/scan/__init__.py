@@ -11,8 +11,9 @@ from sketch.ink import Sketch, Stroke
 from sketch.scan.binding import thin, trace
 from sketch.scan.decode import decode, is_picture
 from sketch.scan.graph import build_graph
-from sketch.scan.junctions import trace_strokes
 from sketch.scan.page import drop_specks, ink_mask, read_page
+from sketch.scan.rings import find_rings, take_rings
+from sketch.scan.strokes import trace_strokes
 
 __all__ = ["is_picture", "read_picture"]
 
@@ -57,8 +58,9 @@ def trace_picture(picture: NDArray[Any]) -> list[NDArray[np.float64]]:
         work = cv2.resize(work, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
         scale *= 2
     distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
-    graph = build_graph(trace(skeleton, count), distance)
-    strokes = [smooth(s, SMOOTHING) for s in trace_strokes(graph, pen)]
+    graph = build_graph(trace(skeleton, count), distance, pen)
+    rings = take_rings(graph, find_rings(mask, distance, pen), pen)
+    strokes = [smooth(s, SMOOTHING) for s in trace_strokes(graph, pen) + rings]
     return [(s + 0.5) * scale - 0.5 for s in strokes if len(s) > 1]
 
 

@@ -9,9 +9,12 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import Chains
 
-__all__ = ["Edge", "Graph", "build_graph"]
+__all__ = ["SIGHT", "Edge", "End", "Graph", "build_graph", "heading"]
 
 Points = NDArray[np.float64]
+SIGHT = 4.0  # pen widths along a branch that show where it is going
+OVERSHOOT = 2.5  # pen widths that a line may go on past its corner
+End = tuple[int, int]  # an edge and which of its ends
 
 
 @dataclass(eq=False)
@@ -34,18 +37,26 @@ class Graph:
     radius: NDArray[np.float64]
     edges: list[Edge] = field(default_factory=list)
 
-    def branches(self) -> list[list[tuple[int, int]]]:
+    def branches(self) -> list[list[End]]:
         """For each node the edges that end there, as (edge, which of its ends)."""
-        out: list[list[tuple[int, int]]] = [[] for _ in self.nodes]
+        out: list[list[End]] = [[] for _ in self.nodes]
         for e, edge in enumerate(self.edges):
             for side in (0, 1):
                 if edge.ends[side] >= 0:
                     out[edge.ends[side]].append((e, side))
         return out
 
+    def outward(self, end: End) -> Points:
+        """An edge's points, from this end on."""
+        points = self.edges[end[0]].points
+        return points if end[1] == 0 else points[::-1]
 
-def build_graph(chains: Chains, distance: NDArray[np.float32]) -> Graph:
-    """The graph of traced chains. distance: each pixel's distance to the paper, shape (h, w)."""
+
+def build_graph(chains: Chains, distance: NDArray[np.float32], pen: float) -> Graph:
+    """The graph of traced chains.
+
+    distance: each pixel's distance to the paper, shape (h, w).  pen: the width of the pen [pixels].
+    """
     at = np.round(chains.nodes).astype(int)
     graph = Graph(chains.nodes, distance[at[:, 1], at[:, 0]].astype(np.float64))
     for points, ends in zip(chains.chains, chains.ends, strict=True):
@@ -54,6 +65,7 @@ def build_graph(chains: Chains, distance: NDArray[np.float32]) -> Graph:
         closed = [points[0]] if ends[0] == -2 else []
         graph.edges.append(Edge(np.array([*head, *points, *tail, *closed]), ends))
     _drop_twigs(graph)
+    _drop_overshoots(graph, pen)
     return graph
 
 
@@ -73,10 +85,68 @@ def _drop_twigs(graph: Graph) -> None:
             continue
         kept.append(edge)
     graph.edges = kept
-    _join_passed_nodes(graph)
+    _join_passed_nodes(graph, {})
 
 
-def _join_passed_nodes(graph: Graph) -> None:
+def heading(points: Points, centre: Points, reach: float, sight: float) -> tuple[Points, Points]:
+    """Where a branch gets clear of a junction's ink, and its direction there as a unit vector.
+
+    Thinning bends a branch within `reach` of the junction's centre, so it is looked at beyond, for the
+    length of `sight`; a branch shorter than that from half of its length on.
+    """
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    clear = np.flatnonzero(np.hypot(*(points - centre).T) >= reach)
+    first = min(along[clear[0]] if len(clear) else np.inf, 0.5 * along[-1])
+    window = points[(along >= first) & (along <= first + sight)]
+    if len(window) < 2:
+        window = points[[-2, -1]] if len(points) > 1 else np.repeat(points, 2, axis=0)
+    centred = window - window.mean(axis=0)
+    direction = np.linalg.svd(centred, full_matrices=False)[2][0] if np.any(centred) else np.array([1.0, 0.0])
+    if direction @ (window[-1] - window[0]) < 0:
+        direction = -direction
+    return window[0], direction
+
+
+def _drop_overshoots(graph: Graph, pen: float) -> None:
+    """Drop the short ends that stick out where two long lines meet in a corner, and set the corner right.
+
+    They are where a line went on past its corner, or what thinning makes of the tip of a sharp one.  The
+    arms of a small cross stay: they are as long as each other.
+    """
+    gone: set[int] = set()
+    corners: dict[int, Points] = {}
+    for node, meeting in enumerate(graph.branches()):
+        short = [
+            e
+            for e, side in meeting
+            if graph.edges[e].ends[1 - side] == -1 and graph.edges[e].length < OVERSHOOT * pen
+        ]
+        rest = [end for end in meeting if end[0] not in short]
+        if not short or len(rest) != 2:
+            continue
+        longest = max(graph.edges[e].length for e in short)
+        if min(graph.edges[e].length for e, _ in rest) > 3 * longest:
+            gone.update(short)
+            corner = _corner(graph, node, rest, pen)
+            if corner is not None:
+                corners[node] = corner
+    graph.edges = [edge for e, edge in enumerate(graph.edges) if e not in gone]
+    _join_passed_nodes(graph, corners)
+
+
+def _corner(graph: Graph, node: int, sides: list[End], pen: float) -> Points | None:
+    """Where the lines of two branches cross, or None where they continue each other or cross elsewhere."""
+    centre, reach = graph.nodes[node], graph.radius[node] + 1
+    (p, u), (q, v) = (heading(graph.outward(end), centre, reach, SIGHT * pen) for end in sides)
+    sine = u[0] * v[1] - u[1] * v[0]
+    if abs(sine) < 0.2:
+        return None
+    along = ((q[0] - p[0]) * v[1] - (q[1] - p[1]) * v[0]) / sine
+    corner = p + along * u
+    return corner if np.hypot(*(corner - centre)) < OVERSHOOT * pen else None
+
+
+def _join_passed_nodes(graph: Graph, corners: dict[int, Points]) -> None:
     """Make one edge of the two that meet at a node where nothing else does any more."""
     branches = graph.branches()
     gone: set[int] = set()
@@ -84,21 +154,41 @@ def _join_passed_nodes(graph: Graph) -> None:
         if len(meeting) != 2:
             continue
         (e, side), (f, other) = meeting
-        if e == f:
-            graph.edges[e].ends = (-2, -2)
-            continue
         first, second = graph.edges[e], graph.edges[f]
         before = first.points if side == 1 else first.points[::-1]
         after = second.points if other == 0 else second.points[::-1]
-        far = second.ends[1 - other]
-        graph.edges[e] = Edge(np.concatenate([before, after[1:]]), (first.ends[1 - side], far))
+        if node in corners:
+            far = np.hypot(*(graph.nodes[node] - corners[node])) + graph.radius[node]
+            before = _cut_back(before, corners[node], far)
+            after = _cut_back(after[::-1], corners[node], far)[::-1]
+        if e == f:
+            first.points, first.ends = before, (-2, -2)
+            if node in corners:
+                inner = _cut_back(before[::-1], corners[node], far)
+                first.points = np.concatenate([inner, inner[:1]])
+            continue
+        beyond = second.ends[1 - other]
+        graph.edges[e] = Edge(np.concatenate([before, after[1:]]), (first.ends[1 - side], beyond))
         gone.add(f)
         near = first.ends[1 - side]
         if near >= 0 and side == 0:
             i = branches[near].index((e, 1))
             branches[near][i] = (e, 0)
-        if far >= 0:
-            i = branches[far].index((f, 1 - other))
-            branches[far][i] = (e, 1)
+        if beyond >= 0:
+            i = branches[beyond].index((f, 1 - other))
+            branches[beyond][i] = (e, 1)
         branches[node] = []
     graph.edges = [edge for k, edge in enumerate(graph.edges) if k not in gone]
+
+
+def _cut_back(points: Points, corner: Points, far: float) -> Points:
+    """Points up to `far` from the corner that they lead to, then straight to the corner, a point a pixel."""
+    near = np.hypot(*(points - corner).T) < far
+    keep = len(points)
+    while keep > 1 and near[keep - 1]:
+        keep -= 1
+    gap = corner - points[keep - 1]
+    steps = max(int(np.hypot(*gap)), 1)
+    return np.concatenate(
+        [points[:keep], points[keep - 1] + gap * (np.arange(1, steps + 1) / steps)[:, None]]
+    )

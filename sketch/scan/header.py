@@ -32,7 +32,8 @@ def probe(data: bytes) -> Header | None:
 
 def _probe(data: bytes) -> Header | None:
     if data[:8] == b"\x89PNG\r\n\x1a\n":
-        return Header("png", *struct.unpack(">II", data[16:24]), _png_orientation(data))
+        width, height = struct.unpack(">II", data[16:24])
+        return Header("png", width, height, _png_orientation(data))
     if data[:3] == b"\xff\xd8\xff":
         return _jpeg(data)
     if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
@@ -44,7 +45,8 @@ def _probe(data: bytes) -> Header | None:
         width, height = struct.unpack("<ii", data[18:26])
         return Header("bmp", abs(width), abs(height))
     if data[:6] in (b"GIF87a", b"GIF89a"):
-        return Header("gif", *struct.unpack("<HH", data[6:10]))
+        width, height = struct.unpack("<HH", data[6:10])
+        return Header("gif", width, height)
     if data[4:8] == b"ftyp" and data[8:12] in (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1"):
         return Header("heic")
     if data[:5] == b"%PDF-":

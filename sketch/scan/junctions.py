@@ -1,100 +1,142 @@
-"""Strokes through junctions: which branches one movement of the pen drew, and where it went between them."""
+"""Junctions: which branches one movement of the pen drew.
+
+Two branches that continue each other smoothly are paired; what is left over ends at the junction.  Where two
+lines run into each other for a while and part again, the ink between serves both: that bridge belongs to one
+junction with the branches at both its ends.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import Graph
+from sketch.scan.graph import SIGHT, End, Graph, heading
 
-__all__ = ["trace_strokes"]
+__all__ = ["Branch", "Junction", "find_junctions"]
 
 Points = NDArray[np.float64]
-End = tuple[int, int]  # an edge and which of its ends
 
-BRIDGE = 1.6  # pen widths: two junctions nearer than this are one crossing, pulled apart by thinning
-LONELY = 1.0  # the cost of an end at a junction, in squares of a radian
-SIGHT = 4.0  # pen widths along a branch that show where it is going
+CROSSING = 1.6  # pen widths: nodes nearer than this are one crossing, which thinning pulled apart
+MERGED = 12.0  # pen widths: the longest bridge that is tried as the ink of two lines
+BRIDGE_COST = 0.06  # for each pen width of a bridge that two lines share
+LONELY = 1.0  # the cost of an end at a junction, as the square of a turn in radians
+KNOT = 8  # more branches than this are paired greedily
 
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """A branch as its junction sees it: where it gets clear of other ink, and its direction there."""
+    """A branch as its junction sees it.
+
+    Attributes:
+        end: the edge and which of its ends.
+        start: [pixels] where it gets clear of the other ink.
+        outward: unit vector of its direction there.
+        centre: [pixels] of the crossing that it comes from.
+    """
 
     end: End
     start: Points
     outward: Points
+    centre: Points
 
 
-def trace_strokes(graph: Graph, pen: float) -> list[Points]:
-    """The strokes of a graph [pixels], each shape (n, 2). pen: the width of the pen [pixels]."""
-    zones = _zones(graph, pen)
-    inner = {e for e, edge in enumerate(graph.edges) if _is_inner(graph, zones, e, pen)}
-    meeting: dict[int, list[End]] = {}
-    for node, ends in enumerate(graph.branches()):
-        meeting.setdefault(zones[node], []).extend(end for end in ends if end[0] not in inner)
-    links: dict[End, End] = {}
-    cut: dict[End, Points] = {}
-    for zone, ends in meeting.items():
-        members = [k for k in range(len(graph.nodes)) if zones[k] == zone]
-        centre = graph.nodes[members].mean(axis=0)
-        reach = max(
-            float(np.max(graph.radius[members])),
-            float(np.max(np.hypot(*(graph.nodes[members] - centre).T))) + pen / 2,
-        )
-        branches = [_look(graph, end, reach, pen) for end in ends]
-        pairs = _pair([_turn_cost(a, b) for a, b in combinations(branches, 2)], len(branches))
-        for i, j in pairs:
-            links[ends[i]], links[ends[j]] = ends[j], ends[i]
-        for branch in branches:
-            cut[branch.end] = branch.start
-            if branch.end not in links:
-                cut[branch.end] = np.array([_reach_out(branch, centre), branch.start])
-    return _assemble(graph, links, cut, inner)
+@dataclass(frozen=True, eq=False)
+class Junction:
+    """branches, the pairs of them that continue each other, and the edges that are ink of several."""
+
+    branches: list[Branch]
+    pairs: list[tuple[int, int]]
+    bridges: list[int]
 
 
-def _zones(graph: Graph, pen: float) -> list[int]:
-    """For each node its zone: nodes joined by bridges of the length of a crossing are one."""
-    zone = list(range(len(graph.nodes)))
+def find_junctions(graph: Graph, pen: float) -> list[Junction]:
+    """The junctions of a skeleton's graph. pen: the width of the pen [pixels]."""
+    crossing = _group(
+        len(graph.nodes),
+        [edge.ends for edge in graph.edges if _is_bridge(edge.ends) and edge.length < CROSSING * pen],
+    )
+    short = [
+        e
+        for e, edge in enumerate(graph.edges)
+        if _is_bridge(edge.ends)
+        and edge.length < CROSSING * pen
+        and crossing[edge.ends[0]] == crossing[edge.ends[1]]
+    ]
+    branches: dict[int, list[Branch]] = {k: [] for k in set(crossing)}
+    members: dict[int, list[int]] = {k: [] for k in branches}
+    for node, k in enumerate(crossing):
+        members[k].append(node)
+    ends: dict[int, list[End]] = {k: [] for k in branches}
+    inner = set(short)
+    for node, meeting in enumerate(graph.branches()):
+        ends[crossing[node]].extend(end for end in meeting if end[0] not in inner)
+    for k, nodes in members.items():
+        # a ring's node stands for all its area
+        centre = np.average(graph.nodes[nodes], axis=0, weights=graph.radius[nodes] ** 2 + 1e-9)
+        spread = float(np.max(np.hypot(*(graph.nodes[nodes] - centre).T)))
+        reach = max(float(np.max(graph.radius[nodes])), spread + pen / 2)
+        for end in ends[k]:
+            start, outward = heading(graph.outward(end), centre, reach, SIGHT * pen)
+            branches[k].append(Branch(end, start, outward, centre))
+    junctions = _share_bridges(graph, branches, crossing, pen)
+    for e in short:
+        junctions[_find(junctions, crossing[graph.edges[e].ends[0]])][2].append(e)
+    return [Junction(b, _pair(b)[1], bridges) for _, b, bridges in junctions]
+
+
+def _is_bridge(ends: tuple[int, int]) -> bool:
+    return ends[0] >= 0 and ends[1] >= 0 and ends[0] != ends[1]
+
+
+def _group(count: int, joined: Sequence[tuple[int, int]]) -> list[int]:
+    """For each of `count` things the name of its group."""
+    group = list(range(count))
 
     def root(k: int) -> int:
-        while zone[k] != k:
-            k = zone[k]
+        while group[k] != k:
+            k = group[k]
         return k
 
-    for edge in graph.edges:
-        a, b = edge.ends
-        if a >= 0 and b >= 0 and a != b and edge.length < BRIDGE * pen:
-            zone[root(a)] = root(b)
-    return [root(k) for k in range(len(zone))]
+    for a, b in joined:
+        group[root(a)] = root(b)
+    return [root(k) for k in range(count)]
 
 
-def _is_inner(graph: Graph, zones: list[int], e: int, pen: float) -> bool:
-    a, b = graph.edges[e].ends
-    return a >= 0 and b >= 0 and a != b and zones[a] == zones[b] and graph.edges[e].length < BRIDGE * pen
+_Merged = list[tuple[set[int], list[Branch], list[int]]]  # crossings, branches, bridges
 
 
-def _outward(graph: Graph, end: End) -> Points:
-    points = graph.edges[end[0]].points
-    return points if end[1] == 0 else points[::-1]
+def _find(junctions: _Merged, crossing: int) -> int:
+    return next(k for k, (crossings, _, _) in enumerate(junctions) if crossing in crossings)
 
 
-def _look(graph: Graph, end: End, reach: float, pen: float) -> Branch:
-    """Look beyond the `reach` in which thinning bends a branch; at half of what there is if it is short."""
-    points = _outward(graph, end)
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    first = min(reach, 0.5 * along[-1])
-    window = points[(along >= first) & (along <= first + SIGHT * pen)]
-    if len(window) < 2:
-        window = points[[-2, -1]] if len(points) > 1 else np.repeat(points, 2, axis=0)
-    centred = window - window.mean(axis=0)
-    direction = np.linalg.svd(centred, full_matrices=False)[2][0] if np.any(centred) else np.array([1.0, 0.0])
-    if direction @ (window[-1] - window[0]) < 0:
-        direction = -direction
-    return Branch(end, window[0], direction)
+def _share_bridges(
+    graph: Graph, branches: dict[int, list[Branch]], crossing: list[int], pen: float
+) -> _Merged:
+    """Merge the junctions at both ends of a bridge where the branches then continue each other better."""
+    junctions: _Merged = [({k}, found, []) for k, found in branches.items()]
+    lengths = [(edge.length, e) for e, edge in enumerate(graph.edges) if _is_bridge(edge.ends)]
+    for length, e in sorted(lengths):
+        if not CROSSING * pen <= length < MERGED * pen:
+            continue
+        first, second = (_find(junctions, crossing[node]) for node in graph.edges[e].ends)
+        if first == second:
+            continue
+        a, b = junctions[first], junctions[second]
+        together = [branch for branch in a[1] + b[1] if branch.end[0] != e]
+        if len(together) > KNOT:
+            continue
+        apart = _pair(a[1])[0] + _pair(b[1])[0]
+        cost, pairs = _pair(together)
+        left = sum(branch.end[0] != e for branch in a[1])
+        crossing_over = sum(i < left <= j for i, j in pairs)
+        if crossing_over >= 2 and cost + BRIDGE_COST * length / pen < apart:
+            junctions[first] = (a[0] | b[0], together, [*a[2], *b[2], e])
+            del junctions[second]
+    return junctions
 
 
 def _turn_cost(a: Branch, b: Branch) -> float:
@@ -111,16 +153,12 @@ def _angle(u: Points, v: Points) -> float:
     return float(abs(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v)))
 
 
-def _pair(costs: list[float], count: int) -> list[tuple[int, int]]:
-    """The cheapest set of pairs, an unpaired branch costing LONELY. costs: in combinations' order."""
-    cost = dict(zip(combinations(range(count), 2), costs, strict=True))
-    if count > 8:  # a knot: greedily
-        free, chosen = set(range(count)), []
-        for (i, j), c in sorted(cost.items(), key=lambda item: item[1]):
-            if i in free and j in free and c < 2 * LONELY:
-                chosen.append((i, j))
-                free -= {i, j}
-        return chosen
+def _pair(branches: list[Branch]) -> tuple[float, list[tuple[int, int]]]:
+    """The cheapest set of pairs, an unpaired branch costing LONELY, and what it costs."""
+    count = len(branches)
+    cost = {(i, j): _turn_cost(branches[i], branches[j]) for i, j in combinations(range(count), 2)}
+    if count > KNOT:
+        return _pair_greedily(cost, count)
 
     def best(left: tuple[int, ...]) -> tuple[float, list[tuple[int, int]]]:
         if not left:
@@ -129,54 +167,21 @@ def _pair(costs: list[float], count: int) -> list[tuple[int, int]]:
         total, chosen = best(rest)
         total += LONELY
         for k, j in enumerate(rest):
+            if cost[i, j] >= 2 * LONELY:
+                continue
             value, others = best(rest[:k] + rest[k + 1 :])
             if value + cost[i, j] < total:
                 total, chosen = value + cost[i, j], [(i, j), *others]
         return total, chosen
 
-    return best(tuple(range(count)))[1]
+    return best(tuple(range(count)))
 
 
-def _reach_out(branch: Branch, centre: Points) -> Points:
-    """Where a branch that ends at a junction ends: straight on, as far as the junction's centre is."""
-    ahead = float((branch.start - centre) @ branch.outward)
-    return np.asarray(branch.start - max(ahead, 0.0) * branch.outward)
-
-
-def _assemble(graph: Graph, links: dict[End, End], cut: dict[End, Points], inner: set[int]) -> list[Points]:
-    """Follow the links from edge to edge: first from ends, then around what closes on itself."""
-    done = set(inner)
-    strokes = []
-    ends = [(e, side) for e in range(len(graph.edges)) for side in (0, 1)]
-    for begin in [end for end in ends if end not in links] + ends:
-        if begin[0] in done:
-            continue
-        pieces, at = [], begin
-        while at[0] not in done:
-            done.add(at[0])
-            pieces.append(_trimmed(graph, at, cut))
-            leave = (at[0], 1 - at[1])
-            if leave not in links:
-                break
-            at = links[leave]
-        else:
-            pieces.append(pieces[0][:1])  # came back to where it began
-        strokes.append(np.concatenate(pieces))
-    return strokes
-
-
-def _trimmed(graph: Graph, begin: End, cut: dict[End, Points]) -> Points:
-    """An edge's points from one end to the other, without what thinning bent at its junctions."""
-    points = _outward(graph, begin)
-    head, tail = cut.get(begin), cut.get((begin[0], 1 - begin[1]))
-    lo, hi = 0, len(points)
-    if head is not None:
-        lo = int(np.argmin(np.hypot(*(points - np.atleast_2d(head)[-1]).T)))
-    if tail is not None:
-        hi = int(np.argmin(np.hypot(*(points - np.atleast_2d(tail)[-1]).T))) + 1
-    kept = [points[lo:hi] if lo < hi else points[len(points) // 2 : len(points) // 2 + 1]]
-    if head is not None and np.ndim(head) == 2:
-        kept.insert(0, head[:1])
-    if tail is not None and np.ndim(tail) == 2:
-        kept.append(tail[:1])
-    return np.concatenate(kept)
+def _pair_greedily(cost: dict[tuple[int, int], float], count: int) -> tuple[float, list[tuple[int, int]]]:
+    free, chosen, total = set(range(count)), [], 0.0
+    for (i, j), c in sorted(cost.items(), key=lambda item: item[1]):
+        if i in free and j in free and c < 2 * LONELY:
+            chosen.append((i, j))
+            free -= {i, j}
+            total += c
+    return total + LONELY * len(free), chosen

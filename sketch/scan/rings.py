@@ -1,0 +1,168 @@
+"""Small rings: outlines of a few pen widths, such as a pivot's, that other lines run into or across.
+
+Within so small an outline the lines and the ring melt together, and thinning leaves a tangle.  The ring
+itself is plain to see, though: paper enclosed by a round belt of ink.  So it is taken first, and what runs
+into it on one side and comes out on another is then a crossing, as wide as the ring.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.scan.graph import Edge, Graph
+
+__all__ = ["find_rings", "take_rings"]
+
+Points = NDArray[np.float64]
+
+SMALLEST, LARGEST = 1.4, 4.5  # pen widths: the radius of the ring that the pen's middle went along
+RAYS = 48  # directions in which the belt is looked for
+DRAWN = 0.9  # the share of the rays that must meet the belt
+OUT_OF_ROUND = 0.12  # deviation from a circle, a share of its radius: a square has 0.11, a triangle 0.24
+OPEN = 0.5  # the share of the rays beyond the belt that must meet paper: a ring stands out from a scribble
+BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
+
+
+def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[Points]:
+    """The closed ways of the pen around small round holes [pixels], each shape (RAYS + 1, 2), best first.
+
+    mask: ink 1, paper 0, shape (h, w).  distance: each ink pixel's distance to the paper.
+    """
+    found = sorted(
+        (ring for seed in _seeds(mask, distance, pen) for ring in _belt(mask, seed, pen)), key=lambda r: -r[0]
+    )
+    rings: list[Points] = []
+    for _, middle, radius, points in found:
+        if all(np.hypot(*(r.mean(axis=0) - middle)) > radius for r in rings):
+            rings.append(points)
+    return rings
+
+
+def _seeds(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[tuple[float, float, float]]:
+    """Where rings may be: middle and radius of small holes, alone and with the holes beside them."""
+    import cv2
+
+    _, labels, stats, centres = cv2.connectedComponentsWithStats(1 - mask, connectivity=4)
+    small = stats[:, cv2.CC_STAT_AREA] < np.pi * (LARGEST * pen) ** 2
+    seeds = [
+        (x, y, np.sqrt(area / np.pi) + pen / 2)
+        for (x, y), area in zip(centres[small], stats[small, cv2.CC_STAT_AREA], strict=True)
+    ]
+    # ink much wider than a line is a hole that closed, wholly or in part
+    inside = _grown((small.astype(np.uint8)[labels] & (1 - mask)), pen / 2)
+    inside |= _grown((distance > 0.75 * pen).astype(np.uint8), pen / 4)
+    _, _, stats, centres = cv2.connectedComponentsWithStats(inside, connectivity=8)
+    for (x, y), box in zip(centres[1:], stats[1:], strict=True):
+        seeds.append((x, y, np.sqrt(box[cv2.CC_STAT_AREA] / np.pi)))
+        seeds.append((x, y, max(box[cv2.CC_STAT_WIDTH], box[cv2.CC_STAT_HEIGHT]) / 2))
+    return [seed for seed in seeds if SMALLEST * pen / 2 <= seed[2] <= LARGEST * pen]
+
+
+def _grown(region: NDArray[Any], by: float) -> NDArray[Any]:
+    import cv2
+
+    side = 2 * max(round(by), 0) + 1
+    return np.asarray(cv2.dilate(region, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))))
+
+
+def _belt(
+    mask: NDArray[Any], seed: tuple[float, float, float], pen: float
+) -> list[tuple[float, Points, float, Points]]:
+    """The belt of ink around a seed, as its score, middle, radius and points; empty where there is none.
+
+    Along each ray the belt is the run of ink whose middle is nearest to the circle so far, which is then
+    fitted to those middles (Kåsa 1976), three times.
+    """
+    angles = np.arange(RAYS) * (2 * np.pi / RAYS)
+    rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    middle, radius = np.array(seed[:2]), seed[2]
+    for _ in range(3):
+        met, along = _runs(mask, middle, rays, radius, pen)
+        if met.mean() < 0.6:
+            return []
+        points = middle + rays[met] * along[met, None]
+        middle, radius = _circle(points)
+        if not SMALLEST * pen <= radius <= LARGEST * pen:
+            return []
+    met, along = _runs(mask, middle, rays, radius, pen)
+    share = float(met.mean())
+    along = np.where(met, along, radius)
+    beyond = 1 - _at(mask, middle + rays * (along + 1.1 * pen)[:, None]).mean()
+    within = (
+        1 - _at(mask, middle + rays * np.maximum(np.where(met, along, radius) - 0.8 * pen, 0)[:, None]).mean()
+    )
+    uneven = float(np.sqrt(np.mean((along - radius) ** 2))) / radius
+    if share < DRAWN or beyond < OPEN or within + beyond < 1 or uneven > OUT_OF_ROUND:
+        return []
+    along = (np.roll(along, 1) + 2 * along + np.roll(along, -1)) / 4
+    points = middle + rays * along[:, None]
+    score = share + beyond + within - 5 * uneven
+    return [(score, middle, radius, np.concatenate([points, points[:1]]))]
+
+
+def _at(mask: NDArray[Any], points: Points) -> NDArray[Any]:
+    x = np.clip(np.round(points[..., 0]).astype(int), 0, mask.shape[1] - 1)
+    y = np.clip(np.round(points[..., 1]).astype(int), 0, mask.shape[0] - 1)
+    return np.asarray(mask[y, x])
+
+
+def _runs(
+    mask: NDArray[Any], middle: Points, rays: Points, radius: float, pen: float
+) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Where each ray crosses ink nearest to `radius`: whether it does, and how far out the ink's middle is.
+
+    Where ink runs along the ray its middle says nothing, and the nearest of it that is a pen wide is taken.
+    """
+    reach = np.arange(max(radius - 1.2 * pen, 0), radius + 1.2 * pen, 0.5)
+    ink = _at(mask, middle + rays[:, None, :] * reach[None, :, None]).astype(float)
+    width = max(int(pen), 1)  # half-pixel steps over half a pen to either side
+    window = np.hanning(2 * width + 3)[1:-1]
+    filled = np.apply_along_axis(np.convolve, 1, ink, window / window.sum(), "same")
+    value = filled - 0.15 * ((reach - radius) / pen) ** 2
+    best = value.argmax(axis=1)
+    met = filled[np.arange(len(rays)), best] > 0.6
+    return met, reach[best]
+
+
+def _circle(points: Points) -> tuple[Points, float]:
+    origin = points.mean(axis=0)
+    x, y = (points - origin).T
+    a, b, c = np.linalg.lstsq(np.stack([x, y, np.ones_like(x)], axis=1), x * x + y * y, rcond=None)[0]
+    return origin + np.array([a, b]) / 2, float(np.sqrt(max(c + (a * a + b * b) / 4, 0.0)))
+
+
+def take_rings(graph: Graph, rings: list[Points], pen: float) -> list[Points]:
+    """Take the rings that other ink touches out of the graph, in place; returns those taken.
+
+    Each leaves one node at its centre, at which the edges that ran into its belt end.
+    """
+    taken = []
+    for ring in rings:
+        middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
+        reach = float(np.hypot(*(ring - middle).T).max()) + BELT * pen
+        near = np.hypot(*(graph.nodes - middle).T) < reach if len(graph.nodes) else np.zeros(0, bool)
+        if near.any():
+            taken.append(ring)
+            _take(graph, middle, reach, set(np.flatnonzero(near).tolist()), pen)
+    return taken
+
+
+def _take(graph: Graph, middle: Points, reach: float, inside: set[int], pen: float) -> None:
+    node = len(graph.nodes)
+    graph.nodes = np.concatenate([graph.nodes, middle[None]])
+    graph.radius = np.append(graph.radius, reach)
+    edges = []
+    for edge in graph.edges:
+        head, tail = (node if end in inside else end for end in edge.ends)
+        outside = np.hypot(*(edge.points - middle).T) >= reach
+        steps = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(int), [0]])))
+        for a, b in steps.reshape(-1, 2):
+            ends = (head if a == 0 else node, tail if b == len(outside) else node)
+            piece = Edge(edge.points[a:b], ends) if b - a < len(outside) else Edge(edge.points, ends)
+            # a stub that ends freely beside the belt is the belt's own
+            if b - a > 1 and (node not in ends or min(ends) >= 0 or piece.length > pen):
+                edges.append(piece)
+    graph.edges = edges

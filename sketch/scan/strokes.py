@@ -1,0 +1,193 @@
+"""Strokes: the pen's way along the edges of a skeleton and through its junctions."""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.scan.graph import End, Graph
+from sketch.scan.junctions import Branch, Junction, find_junctions
+
+__all__ = ["trace_strokes"]
+
+Points = NDArray[np.float64]
+
+SHARED_SIDE = 0.45  # an outline may borrow this share of its length from ink that it rests on
+CRUMB = 2.0  # pen widths: a piece shorter than this that starts at other ink is part of that
+OWN_INK = 0.5  # and the lender has at least this much other ink, as a share of what it lends
+
+
+@dataclass(eq=False)
+class Course:
+    """A stroke as a course over the graph: edges by the end at which they are entered.
+
+    via: [pixels] the ink that lies between an edge and the next one, where they share it with others.
+    borrowed: the way from the last end back to the first over other strokes' ink, or None.
+    """
+
+    steps: list[End]
+    via: list[Points] = field(default_factory=list)
+    closed: bool = False
+    borrowed: Points | None = None
+
+
+def trace_strokes(graph: Graph, pen: float) -> list[Points]:
+    """The strokes of a graph [pixels], each shape (n, 2). pen: the width of the pen [pixels]."""
+    junctions = find_junctions(graph, pen)
+    branch_of = {branch.end: branch for junction in junctions for branch in junction.branches}
+    inner = {e for junction in junctions for e in junction.bridges}
+    links: dict[End, tuple[End, Points]] = {}
+    for junction in junctions:
+        for i, j in junction.pairs:
+            a, b = junction.branches[i], junction.branches[j]
+            via = _way(graph, junction, a, b, pen)
+            links[a.end], links[b.end] = (b.end, via), (a.end, via[::-1])
+    courses = _follow(graph, links, inner)
+    for course in courses:
+        _borrow(graph, course, courses, inner)
+    kept = [course for course in courses if not _is_crumb(graph, course, pen)]
+    return [_points(graph, course, branch_of, links) for course in kept]
+
+
+def _way(graph: Graph, junction: Junction, a: Branch, b: Branch, pen: float) -> Points:
+    """The ink between two branches of a junction that has a long bridge; none where they cross at a point."""
+    if not junction.bridges or np.hypot(*(a.centre - b.centre)) < 1e-9:
+        return np.empty((0, 2))
+    return _shortest(graph, _node(graph, a.end), _node(graph, b.end), np.inf, only=set(junction.bridges))[0]
+
+
+def _node(graph: Graph, end: End) -> int:
+    return graph.edges[end[0]].ends[end[1]]
+
+
+def _shortest(
+    graph: Graph,
+    start: int,
+    goal: int,
+    longest: float,
+    *,
+    only: set[int] | None = None,
+    without: set[int] | None = None,
+) -> tuple[Points, list[int]]:
+    """The shortest way between two nodes along edges: its points and edges; empty where there is none."""
+    queue: list[tuple[float, int, tuple[End, ...]]] = [(0.0, start, ())]
+    branches, seen = graph.branches(), set()
+    while queue:
+        length, node, way = heapq.heappop(queue)
+        if node == goal:
+            pieces = [graph.outward(end) for end in way]
+            return (np.concatenate(pieces) if pieces else np.empty((0, 2))), [e for e, _ in way]
+        if node in seen:
+            continue
+        seen.add(node)
+        for e, side in branches[node]:
+            far = graph.edges[e].ends[1 - side]
+            total = length + graph.edges[e].length
+            if (
+                far < 0
+                or total > longest
+                or (only is not None and e not in only)
+                or (without and e in without)
+            ):
+                continue
+            heapq.heappush(queue, (total, far, (*way, (e, side))))
+    return np.empty((0, 2)), []
+
+
+def _follow(graph: Graph, links: dict[End, tuple[End, Points]], inner: set[int]) -> list[Course]:
+    """Follow the links from edge to edge: first from ends, then around what closes on itself."""
+    done, courses = set(inner), []
+    ends = [(e, side) for e in range(len(graph.edges)) for side in (0, 1)]
+    for begin in [end for end in ends if end not in links] + ends:
+        if begin[0] in done:
+            continue
+        course, at = Course([]), begin
+        while at[0] not in done:
+            done.add(at[0])
+            course.steps.append(at)
+            leave = (at[0], 1 - at[1])
+            if leave not in links:
+                break
+            at, via = links[leave]
+            course.via.append(via)
+        else:
+            course.closed = True
+        if graph.edges[begin[0]].ends == (-2, -2):
+            course.closed = True
+        courses.append(course)
+    return courses
+
+
+def _is_crumb(graph: Graph, course: Course, pen: float) -> bool:
+    """Whether a course lies within the ink of the junctions at its ends."""
+    ends = (_node(graph, course.steps[0]), _node(graph, (course.steps[-1][0], 1 - course.steps[-1][1])))
+    return not course.closed and max(ends) >= 0 and _length(graph, course) < CRUMB * pen
+
+
+def _length(graph: Graph, course: Course) -> float:
+    return sum(graph.edges[e].length for e, _ in course.steps)
+
+
+def _borrow(graph: Graph, course: Course, courses: list[Course], inner: set[int]) -> None:
+    """Close an outline that rests on other ink with both its ends: that ink is its missing side too.
+
+    A lid that is drawn as a stroke of its own lends nothing: it has hardly any other ink, and closes the
+    outline as it is.
+    """
+    if course.closed or not course.steps:
+        return
+    head, tail = course.steps[0], (course.steps[-1][0], 1 - course.steps[-1][1])
+    a, b = _node(graph, head), _node(graph, tail)
+    if a < 0 or b < 0:
+        return
+    own = {e for e, _ in course.steps}
+    way, edges = _shortest(graph, b, a, SHARED_SIDE * _length(graph, course), without=own)
+    if a != b and not edges:
+        return
+    lent = sum(graph.edges[e].length for e in edges)
+    for lender in courses:
+        shared = [e for e, _ in lender.steps if e in edges]
+        if shared and _length(graph, lender) - sum(graph.edges[e].length for e in shared) < OWN_INK * lent:
+            return
+    course.borrowed = way
+
+
+def _points(
+    graph: Graph, course: Course, branch_of: dict[End, Branch], links: dict[End, tuple[End, Points]]
+) -> Points:
+    pieces = []
+    for k, step in enumerate(course.steps):
+        pieces.append(_trimmed(graph, step, branch_of, links))
+        if k < len(course.via):
+            pieces.append(course.via[k])
+    if course.borrowed is not None:
+        pieces.append(course.borrowed)
+    if (course.closed or course.borrowed is not None) and graph.edges[course.steps[0][0]].ends != (-2, -2):
+        pieces.append(pieces[0][:1])
+    return np.concatenate(pieces)
+
+
+def _trimmed(
+    graph: Graph, begin: End, branch_of: dict[End, Branch], links: dict[End, tuple[End, Points]]
+) -> Points:
+    """An edge's points from one end to the other, without what thinning bent at its junctions."""
+    points = graph.outward(begin)
+    finish = (begin[0], 1 - begin[1])
+    head, tail = branch_of.get(begin), branch_of.get(finish)
+    lo = int(np.argmin(np.hypot(*(points - head.start).T))) if head else 0
+    hi = int(np.argmin(np.hypot(*(points - tail.start).T))) + 1 if tail else len(points)
+    kept = [points[lo:hi] if lo < hi else points[len(points) // 2 : len(points) // 2 + 1]]
+    if head and begin not in links:
+        kept.insert(0, _reach_out(head)[None])
+    if tail and finish not in links:
+        kept.append(_reach_out(tail)[None])
+    return np.concatenate(kept)
+
+
+def _reach_out(branch: Branch) -> Points:
+    """Where a branch ends that ends at a junction: straight on, as far as the junction's centre is."""
+    ahead = float((branch.start - branch.centre) @ branch.outward)
+    return np.asarray(branch.start - max(ahead, 0.0) * branch.outward)
