@@ -1,13 +1,17 @@
-/* The public interface, and the run from sample to sample. */
+/* The public interface, and a run from its start to its end. */
 #include <stdlib.h>
 #include <time.h>
 
 #include "crowd.h"
-#include "world.h"
+#include "exact.h"
 
 struct Sim {
     World world;
-    Crowd *crowd;
+    Exact exact;
+    Recorder recorder;
+    Crowd *crowd; /* made when the first body needs it */
+    bool *entering;
+    double *source_mass, *source_moment; /* of the inputs that move; 0 for those that do not */
 };
 
 int32_t sim_abi(void) { return SIM_ABI; }
@@ -19,10 +23,19 @@ size_t sim_struct_size(int32_t which) {
 
 Sim *sim_create(const SimInput *input) {
     Sim *sim = calloc(1, sizeof *sim);
+    size_t n = (size_t)input->body_count;
     if (!sim) return NULL;
-    if (world_create(&sim->world, input) != SIM_OK) {
-        free(sim);
+    sim->source_mass = malloc((n + 1) * sizeof(double));
+    sim->source_moment = malloc((n + 1) * sizeof(double));
+    sim->entering = calloc(n + 1, sizeof(bool));
+    if (!sim->source_mass || !sim->source_moment || !sim->entering || world_create(&sim->world, input) != SIM_OK) {
+        sim_destroy(sim);
         return NULL;
+    }
+    for (size_t i = 0; i < n; i++) {
+        bool moves = sim->world.shape[sim->world.source_shape[i]].body != 0;
+        sim->source_mass[i] = moves ? input->bodies[i].mass : 0;
+        sim->source_moment[i] = moves ? input->bodies[i].moment : 0;
     }
     return sim;
 }
@@ -30,43 +43,134 @@ Sim *sim_create(const SimInput *input) {
 void sim_destroy(Sim *sim) {
     if (!sim) return;
     crowd_destroy(sim->crowd);
+    exact_destroy(&sim->exact);
+    recorder_destroy(&sim->recorder);
     world_destroy(&sim->world);
+    free(sim->source_mass);
+    free(sim->source_moment);
+    free(sim->entering);
     free(sim);
 }
 
 const char *sim_error(const Sim *sim) { return sim->world.error ? sim->world.error : "out of memory"; }
-int64_t sim_event_count(const Sim *sim) { return (void)sim, 0; }
-void sim_events(const Sim *sim, SimEvent *out) { (void)sim, (void)out; }
+int64_t sim_event_count(const Sim *sim) { return sim->recorder.event_count; }
 void sim_profile(const Sim *sim, SimProfile *out) { *out = sim->world.profile; }
 
-static void record(const World *world, double *frame, double *energy) {
-    for (int32_t i = 0; i < world->source_count; i++, frame += 6) {
-        const Shape *shape = &world->shape[world->source_shape[i]];
-        const Body *body = &world->body[shape->body];
-        Pose at = body_pose(body);
-        Vec arm = turn(at, shape->offset), p = vadd(at.p, arm), v = vmad(body->velocity, body->spin, vperp(arm));
-        frame[0] = p.x, frame[1] = p.y, frame[2] = body->angle + shape->turned;
-        frame[3] = v.x, frame[4] = v.y, frame[5] = body->spin;
-    }
-    energy[0] = energy[1] = 0;
+void sim_events(const Sim *sim, SimEvent *out) {
+    for (int64_t k = 0; k < sim->recorder.event_count; k++) out[k] = sim->recorder.event[k];
+}
+
+static double now(void) {
+    struct timespec t;
+    timespec_get(&t, TIME_UTC);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---------------------------------------------------------------- the crowd beside the rest */
+
+static bool has_crowd(const World *world) {
+    for (int32_t i = 1; i < world->body_count; i++)
+        if (world->body[i].mode == MODE_CROWD) return true;
+    return false;
+}
+
+/* Bodies that come near the crowd within a step belong to it. */
+static int absorb(Sim *sim, double from, double to) {
+    World *world = &sim->world;
     for (int32_t i = 1; i < world->body_count; i++) {
-        const Body *b = &world->body[i];
-        energy[0] += 0.5 * b->mass * vdot(b->velocity, b->velocity) + 0.5 * b->moment * b->spin * b->spin;
-        energy[1] -= b->mass * vdot(world->gravity, b->position);
+        Mode mode = world->body[i].mode;
+        if (mode != MODE_FLIGHT && mode != MODE_SMOOTH) continue;
+        State a = exact_state(&sim->exact, i, from), b = exact_state(&sim->exact, i, to);
+        double way = vlength(vsub(b.p, a.p)) + world->body[i].reach;
+        for (int32_t j = 1; j < world->body_count; j++) {
+            const Body *other = &world->body[j];
+            if (other->mode != MODE_CROWD) continue;
+            double near = way + other->reach + 2 * vlength(other->velocity) * (to - from) + 0.1 * other->reach;
+            if (vlength(vsub(other->position, a.p)) > near) continue;
+            int status = exact_hand_over(&sim->exact, i, from);
+            if (status != SIM_OK) return status;
+            break;
+        }
     }
+    return SIM_OK;
+}
+
+/* Step the crowd from `from` to `to`, but not the bodies that entered it at `to`. */
+static int step_crowd(Sim *sim, double from, double to, double tolerance) {
+    World *world = &sim->world;
+    if (!sim->crowd) {
+        int status = world_decompose(world);
+        if (status != SIM_OK) return status;
+        if (!(sim->crowd = crowd_create(world))) return SIM_OUT_OF_MEMORY;
+    }
+    for (int32_t i = 1; i < world->body_count; i++)
+        if (sim->entering[i]) world->body[i].mode = MODE_SMOOTH;
+    double start = now();
+    int status = crowd_step(sim->crowd, world, to - from, tolerance);
+    world->profile.crowd_time += now() - start;
+    for (int32_t i = 1; i < world->body_count && status == SIM_OK; i++)
+        if (sim->entering[i]) world->body[i].mode = MODE_CROWD;
+        else status = exact_after_crowd(&sim->exact, i, from, to);
+    return status;
+}
+
+/* The end of the crowd's step that starts at `time`: steps end at every sample, and 60 times a second at least. */
+static double step_end(const SimOptions *options, double time) {
+    double rate = options->fps * ceil(60 / options->fps);
+    return (floor(time * rate * (1 + 1e-12) + 1e-6) + 1) / rate;
+}
+
+static int advance(Sim *sim, const SimOptions *options, double end) {
+    World *world = &sim->world;
+    double time = 0, reached;
+    int status = exact_start(&sim->exact, 0);
+    while (status == SIM_OK && time < end) {
+        if (!has_crowd(world)) {
+            status = exact_run(&sim->exact, time, end, &time);
+            continue;
+        }
+        double next = fmin(step_end(options, time), end);
+        status = absorb(sim, time, next);
+        for (int32_t i = 1; i < world->body_count; i++) sim->entering[i] = world->body[i].mode != MODE_CROWD;
+        if (status == SIM_OK) status = exact_run(&sim->exact, time, next, &reached);
+        for (int32_t i = 1; i < world->body_count; i++) sim->entering[i] = sim->entering[i] && world->body[i].mode == MODE_CROWD;
+        if (status == SIM_OK && reached > time) status = step_crowd(sim, time, reached, options->tolerance);
+        time = reached;
+    }
+    return status == SIM_OK ? exact_finish(&sim->exact) : status;
+}
+
+/* ---------------------------------------------------------------- the run */
+
+/* Kinetic and potential energy of every sample [J]; potential is 0 at the scene's origin. Returns whether all is finite. */
+static bool find_energy(const Sim *sim, int64_t samples, const double *frames, double *energy) {
+    const World *world = &sim->world;
+    bool finite = true;
+    for (int64_t k = 0; k < samples; k++) {
+        double kinetic = 0, potential = 0;
+        for (int32_t i = 0; i < world->source_count; i++, frames += 6) {
+            double m = sim->source_mass[i], speed = frames[3] * frames[3] + frames[4] * frames[4];
+            kinetic += 0.5 * (m * speed + sim->source_moment[i] * frames[5] * frames[5]);
+            potential -= m * (world->gravity.x * frames[0] + world->gravity.y * frames[1]);
+            finite = finite && isfinite(frames[0]) && isfinite(frames[1]) && isfinite(frames[2]);
+        }
+        energy[2 * k] = kinetic;
+        energy[2 * k + 1] = potential;
+    }
+    return finite;
 }
 
 int32_t sim_run(Sim *sim, const SimOptions *options, double *frames, double *energy) {
     World *world = &sim->world;
-    int status = world_decompose(world);
-    if (status == SIM_OK) status = world_separate(world, options->tolerance);
-    if (status == SIM_OK && !(sim->crowd = crowd_create(world))) status = SIM_OUT_OF_MEMORY;
-    for (int32_t i = 1; i < world->body_count; i++) world->body[i].mode = MODE_CROWD;
-    for (int64_t k = 0; k < options->sample_count && status == SIM_OK; k++) {
-        record(world, frames + k * 6 * world->source_count, energy + 2 * k);
-        for (int32_t i = 1; i < world->body_count; i++)
-            if (world->body[i].mode == MODE_FLIGHT) world->body[i].mode = MODE_CROWD;
-        if (k + 1 < options->sample_count) status = crowd_step(sim->crowd, world, 1 / options->fps, options->tolerance);
-    }
+    double start = now(), end = (double)(options->sample_count - 1) / options->fps;
+    int status = world_separate(world, options->tolerance);
+    if (status == SIM_OK) status = recorder_create(&sim->recorder, world, options, frames);
+    if (status == SIM_OK) status = exact_create(&sim->exact, world, &sim->recorder, options->tolerance, end);
+    if (status == SIM_OK) status = advance(sim, options, end);
+    if (status == SIM_OK && !find_energy(sim, options->sample_count, frames, energy)) status = SIM_NOT_FINITE;
+    world->profile.smooth_evals = sim->exact.smooth.evals;
+    world->profile.rows = sim->exact.smooth.rows;
+    world->profile.total_time = now() - start;
+    if (status == SIM_NOT_FINITE) world->error = "the motion went beyond the range of numbers";
     return status;
 }

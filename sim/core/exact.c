@@ -1,0 +1,270 @@
+#include "exact.h"
+
+#include <stdlib.h>
+
+#define BUCKET_LIMIT 400.0 /* events of one body that may come in a burst */
+#define BUCKET_LEAK 200.0  /* and a second in the long run */
+
+int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, double end) {
+    size_t n = (size_t)world->body_count;
+    /* A gap of a twentieth of the tolerance moves nothing farther than that; rounding sets the least. */
+    Slack slack = {.gap = fmax(0.05 * tolerance, 1e-10 * world->size), .root = 1e-14 * world->size};
+    slack.speed = slack.gap;
+    *e = (Exact){.world = world, .recorder = recorder, .slack = slack, .tolerance = tolerance, .end = end};
+    e->track = calloc(n, sizeof *e->track);
+    e->island = calloc(n, sizeof *e->island);
+    e->motion = malloc(n * sizeof *e->motion);
+    e->acceleration = malloc(3 * n * sizeof *e->acceleration);
+    e->root = malloc(n * sizeof *e->root);
+    e->changed = calloc(n, sizeof *e->changed);
+    if (!e->track || !e->island || !e->motion || !e->acceleration || !e->root || !e->changed) return SIM_OUT_OF_MEMORY;
+    int status = system_create(&e->group, world);
+    if (status == SIM_OK) status = system_create(&e->part, world);
+    if (status == SIM_OK) status = smooth_create(&e->smooth, world, tolerance, slack);
+    State still = {0};
+    e->track[0] = (Track){.motion = motion_at_rest(&still, 0), .island = -1, .touch_time = INFINITY};
+    return status;
+}
+
+void exact_destroy(Exact *e) {
+    for (int32_t i = 0; e->island && i < e->island_count; i++) {
+        free(e->island[i].member);
+        free(e->island[i].contact);
+    }
+    free(e->track);
+    free(e->island);
+    free(e->motion);
+    free(e->acceleration);
+    free(e->root);
+    free(e->changed);
+    free(e->impulse);
+    free(e->touching);
+    free(e->closed);
+    system_destroy(&e->group);
+    system_destroy(&e->part);
+    smooth_destroy(&e->smooth);
+    contact_solver_destroy(&e->solver);
+    *e = (Exact){0};
+}
+
+/* ---------------------------------------------------------------- first touches */
+
+static bool is_tracked(const Exact *e, int32_t body) { return e->world->body[body].mode != MODE_CROWD; }
+
+/* The features of a pair that are closed: those of the island that both are of, or one with the background. */
+static int32_t closed_features(Exact *e, int32_t a, int32_t b) {
+    int32_t owner = e->track[a].island >= 0 ? e->track[a].island : e->track[b].island, count = 0;
+    if (owner < 0) return 0;
+    const Island *island = &e->island[owner];
+    for (int32_t k = 0; k < island->contact_count; k++) {
+        const Feature *f = &island->contact[k].feature;
+        if (!((f->body_a == a && f->body_b == b) || (f->body_a == b && f->body_b == a))) continue;
+        if (count == e->closed_capacity) {
+            int32_t capacity = count ? 2 * count : 16;
+            const Feature **grown = realloc(e->closed, (size_t)capacity * sizeof *grown);
+            if (!grown) return count;
+            e->closed = grown;
+            e->closed_capacity = capacity;
+        }
+        e->closed[count++] = f;
+    }
+    return count;
+}
+
+static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
+    Track *ta = &e->track[a], *tb = &e->track[b];
+    if (ta->motion.degree == 0 && tb->motion.degree == 0) return;
+    double to = fmin(e->end, fmin(ta->motion.end, tb->motion.end));
+    if (a != 0) to = fmin(to, fmax(ta->touch_time, b != 0 ? tb->touch_time : 0)); /* later ones are asked for again */
+    int32_t closed = closed_features(e, a, b);
+    Mover ma = {a, &ta->motion}, mb = {b, &tb->motion};
+    e->world->profile.pairs += 1;
+    double t = first_touch(e->world, ma, mb, from, to, &e->slack, e->closed, closed);
+    if (t < ta->touch_time) ta->touch_time = t, ta->partner = b;
+    if (b != 0 && t < tb->touch_time) tb->touch_time = t, tb->partner = a;
+}
+
+/* Find the first touches of all bodies marked as changed, and of those whose partner was one of them. */
+static void find_touches(Exact *e, double from) {
+    int32_t n = e->world->body_count;
+    for (int32_t i = 1; i < n; i++)
+        if (!e->changed[i] && is_tracked(e, i) && isfinite(e->track[i].touch_time) && e->changed[e->track[i].partner])
+            e->changed[i] = true; /* its partner goes another way now: look at all its pairs again */
+    for (int32_t i = 1; i < n; i++)
+        if (e->changed[i]) e->track[i].touch_time = INFINITY;
+    for (int32_t i = 1; i < n; i++) {
+        if (!e->changed[i] || !is_tracked(e, i)) continue;
+        find_touch(e, i, 0, from);
+        for (int32_t j = 1; j < n; j++)
+            if (j != i && is_tracked(e, j) && !(e->changed[j] && j < i)) find_touch(e, i, j, from);
+    }
+    for (int32_t i = 1; i < n; i++) e->changed[i] = false;
+}
+
+/* ---------------------------------------------------------------- islands */
+
+void island_dissolve(Exact *e, int32_t island) {
+    Island *is = &e->island[island];
+    for (int32_t k = 0; k < is->member_count; k++) e->track[is->member[k]].island = -1;
+    is->in_use = false;
+    is->member_count = is->contact_count = 0;
+}
+
+static int load_part(Exact *e, const Island *island, double time) {
+    system_clear(&e->part);
+    for (int32_t k = 0; k < island->member_count; k++) {
+        State state = motion_state(&e->track[island->member[k]].motion, time);
+        system_add_body(&e->part, island->member[k], &state);
+    }
+    for (int32_t k = 0; k < island->contact_count; k++) {
+        int status = system_add_contact(&e->part, &island->contact[k]);
+        if (status != SIM_OK) return status;
+    }
+    system_find_joints(&e->part);
+    return SIM_OK;
+}
+
+int island_advance(Exact *e, int32_t index, double from) {
+    Island *island = &e->island[index];
+    int status = load_part(e, island, from);
+    if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
+    if (status == SIM_OK) status = smooth_project(&e->smooth, &e->part);
+    if (status == SIM_OK)
+        status = smooth_step(&e->smooth, &e->part, from, fmax(e->end, from + 1e-9), &island->step, e->motion, &island->ended);
+    for (int32_t k = 0; k < island->contact_count; k++) island->contact[k] = e->part.contact[k];
+    for (int32_t k = 0; k < island->member_count; k++) {
+        Track *track = &e->track[island->member[k]];
+        record_motion(e->recorder, island->member[k], &track->motion, from);
+        track->motion = e->motion[k];
+        e->changed[island->member[k]] = true;
+    }
+    e->world->profile.smooth_steps += 1;
+    return status;
+}
+
+/* ---------------------------------------------------------------- the loop */
+
+/* Whether a body's events come so fast that it belongs to the crowd. */
+static bool overflows(Exact *e, int32_t body, double time) {
+    Track *t = &e->track[body];
+    t->bucket = fmax(0, t->bucket - BUCKET_LEAK * (time - t->bucket_time)) + 1;
+    t->bucket_time = time;
+    return t->bucket > BUCKET_LIMIT;
+}
+
+static int handle_touch(Exact *e, int32_t body, double time, bool *crowded) {
+    int32_t partner = e->track[body].partner;
+    system_clear(&e->group);
+    bool overflow = overflows(e, body, time);
+    int status = group_gather(e, body, time);
+    if (status == SIM_OK && partner != 0) status = group_gather(e, partner, time);
+    if (status != SIM_OK) return status;
+    if (overflow) {
+        e->world->profile.budget_spent += 1;
+        *crowded = true;
+        for (int32_t k = 0; k < e->group.count; k++) e->world->body[e->group.member[k]].mode = MODE_CROWD;
+    }
+    status = group_reform(e, time);
+    for (int32_t k = 0; k < e->group.count; k++) *crowded = *crowded || !is_tracked(e, e->group.member[k]);
+    return status;
+}
+
+int exact_start(Exact *e, double time) {
+    int32_t n = e->world->body_count;
+    for (int32_t i = 1; i < n; i++) {
+        if (!is_tracked(e, i)) continue;
+        State state = body_state(&e->world->body[i]);
+        e->track[i] = (Track){.motion = motion_in_flight(&state, time, e->world->gravity), .island = -1,
+                              .touch_time = INFINITY, .bucket_time = time};
+        e->world->body[i].mode = MODE_SMOOTH; /* not looked at yet */
+    }
+    for (int32_t i = 1; i < n; i++) {
+        if (e->world->body[i].mode != MODE_SMOOTH || e->track[i].island >= 0) continue;
+        system_clear(&e->group);
+        int status = group_gather(e, i, time);
+        if (status == SIM_OK) status = group_reform(e, time);
+        if (status != SIM_OK) return status;
+    }
+    find_touches(e, time);
+    return SIM_OK;
+}
+
+/* The next thing to happen: a body's touch, or an island's end of motion. */
+static double next_event(const Exact *e, int32_t *body, int32_t *island) {
+    double first = INFINITY;
+    *body = *island = -1;
+    for (int32_t i = 1; i < e->world->body_count; i++)
+        if (is_tracked(e, i) && e->track[i].touch_time < first) first = e->track[i].touch_time, *body = i;
+    for (int32_t k = 0; k < e->island_count; k++) {
+        if (!e->island[k].in_use) continue;
+        double end = e->track[e->island[k].member[0]].motion.end;
+        if (end < first) first = end, *island = k;
+    }
+    return first;
+}
+
+int exact_run(Exact *e, double from, double until, double *reached) {
+    int status = SIM_OK;
+    bool crowded = false;
+    *reached = from;
+    find_touches(e, from); /* of what came back from the crowd */
+    while (status == SIM_OK && !crowded) {
+        int32_t body, island;
+        double time = next_event(e, &body, &island);
+        if (time >= until) {
+            *reached = until;
+            return SIM_OK;
+        }
+        *reached = time;
+        if (island >= 0 && !e->island[island].ended) {
+            status = island_advance(e, island, time);
+        } else if (island >= 0) {
+            int32_t member = e->island[island].member[0];
+            e->track[member].partner = 0;
+            status = handle_touch(e, member, time, &crowded);
+        } else {
+            status = handle_touch(e, body, time, &crowded);
+        }
+        if (status == SIM_OK) find_touches(e, time);
+    }
+    return status;
+}
+
+int exact_finish(Exact *e) {
+    for (int32_t i = 0; i < e->world->body_count; i++)
+        if (is_tracked(e, i)) record_motion(e->recorder, i, &e->track[i].motion, INFINITY);
+    return SIM_OK;
+}
+
+/* ---------------------------------------------------------------- beside the crowd */
+
+State exact_state(const Exact *e, int32_t body, double time) { return motion_state(&e->track[body].motion, time); }
+
+int exact_hand_over(Exact *e, int32_t body, double time) {
+    system_clear(&e->group);
+    int status = group_gather(e, body, time);
+    group_send_to_crowd(e, time);
+    find_touches(e, time);
+    return status;
+}
+
+int exact_after_crowd(Exact *e, int32_t body, double from, double to) {
+    Mode mode = e->world->body[body].mode;
+    Track *track = &e->track[body];
+    bool was_in = track->motion.end < 0; /* the mark of a body that the crowd carries */
+    if (mode == MODE_CROWD && !was_in) { /* woken */
+        record_motion(e->recorder, body, &track->motion, nextafter(from, INFINITY));
+        track->motion.end = -1;
+        was_in = true;
+    }
+    if (!was_in) return SIM_OK;
+    record_state(e->recorder, body, to);
+    if (mode == MODE_CROWD) return SIM_OK;
+    State state = body_state(&e->world->body[body]);
+    *track = (Track){.motion = mode == MODE_REST ? motion_at_rest(&state, to) : motion_in_flight(&state, to, e->world->gravity),
+                     .island = -1, .touch_time = INFINITY, .bucket_time = to};
+    e->world->profile.rests += mode == MODE_REST;
+    e->world->profile.flights += mode == MODE_FLIGHT;
+    e->changed[body] = true;
+    return SIM_OK;
+}

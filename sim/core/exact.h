@@ -1,0 +1,89 @@
+/* Motion from event to event: every body has a motion in closed form until something changes it.
+ *
+ * An event is the first touch of two bodies, or the end of a stretch of smooth motion.  Between events nothing is
+ * computed; at one, only the bodies about it are looked at again.
+ */
+#ifndef EXACT_H
+#define EXACT_H
+
+#include "impact.h"
+#include "record.h"
+#include "smooth.h"
+
+/* Bodies that joints and pressing contacts hold together, in smooth motion. */
+typedef struct Island {
+    int32_t member_count, contact_count, member_capacity, contact_capacity;
+    int32_t *member;
+    Contact *contact;
+    double step;  /* length to try next [s] */
+    bool ended;   /* the modes of its contacts end with its present motion */
+    bool in_use;
+} Island;
+
+typedef struct Track {
+    Motion motion;
+    int32_t island;   /* -1 for flight and rest */
+    double touch_time; /* first touch with anything, as far as the motions reach */
+    int32_t partner;
+    double bucket, bucket_time; /* how many events it had lately */
+} Track;
+
+typedef struct Exact {
+    World *world;
+    Recorder *recorder;
+    Slack slack;
+    double tolerance, end;
+    Track *track;     /* of every body */
+    Island *island;
+    int32_t island_count;
+    System group;     /* the bodies about an event */
+    System part;      /* one island */
+    ContactSolver solver;
+    Smooth smooth;
+    Motion *motion;   /* of the part's members, from a step */
+    double *acceleration;
+    int32_t *root;    /* union-find over the group */
+    Vec *impulse;
+    int32_t impulse_capacity;
+    Touching *touching;
+    int32_t touching_capacity;
+    const Feature **closed;
+    int32_t closed_capacity;
+    bool *changed;
+} Exact;
+
+int exact_create(Exact *exact, World *world, Recorder *recorder, double tolerance, double end);
+void exact_destroy(Exact *exact);
+
+/* Take the bodies of the given mode that are not tracked yet into account from `time` on. */
+int exact_start(Exact *exact, double time);
+
+/* Run to `until`, or to an earlier time at which bodies went to the crowd; *reached says which. */
+int exact_run(Exact *exact, double from, double until, double *reached);
+
+/* Write what is left to be written: samples up to the end. */
+int exact_finish(Exact *exact);
+
+/* A tracked body's state. */
+State exact_state(const Exact *exact, int32_t body, double time);
+
+/* Give a body, with all that its motion hangs on, to the crowd. */
+int exact_hand_over(Exact *exact, int32_t body, double time);
+
+/* A body may have entered or left the crowd in its step: write its samples and follow it on. */
+int exact_after_crowd(Exact *exact, int32_t body, double from, double to);
+
+/* group.c: dissolve what holds the bodies of exact->group at `time`, resolve what happens, and set them on their way. */
+int group_reform(Exact *exact, double time);
+
+/* Put a body into the group with all that its motion hangs on: its island, its joints, what touches it. */
+int group_gather(Exact *exact, int32_t body, double time);
+
+/* Set the group's bodies down where they are, for the crowd to take up. */
+void group_send_to_crowd(Exact *exact, double time);
+
+/* The next stretch of an island's smooth motion. */
+int island_advance(Exact *exact, int32_t island, double from);
+void island_dissolve(Exact *exact, int32_t island);
+
+#endif

@@ -1,0 +1,54 @@
+/* How two shapes can touch: a corner or a circle of one against a side, a corner or a circle of the other.
+ *
+ * Every way of touching has one smooth gap function of the two poses.  Looking for the first touch, holding a contact
+ * that has closed, and noticing its end all ask the same function.  Shapes need not be convex for that.
+ */
+#ifndef FEATURE_H
+#define FEATURE_H
+
+#include "motion.h"
+
+typedef struct Feature {
+    int32_t shape_a, shape_b; /* the point is of a, the side (or the other point) of b */
+    int32_t body_a, body_b;
+    int32_t index_a, index_b; /* vertices; b's is where its side starts */
+    bool is_side;             /* b has a side, else a point */
+    bool is_corner;           /* b's point is a polygon's corner, and touches only outwards */
+    Vec point_a, point_b;     /* in the bodies' frames */
+    double radius_a, radius_b;
+    Vec along;                /* b's side from point_b on, unit; of a corner the direction of the side before */
+    Vec after;                /* of a corner: the direction of the side after it */
+    double length;            /* of the side */
+} Feature;
+
+/* A feature at one moment. The normal points from b to a; `along` is the normal turned by a quarter. */
+typedef struct Gap {
+    double gap, rate;  /* [m], [m/s] */
+    Vec normal, along;
+    Vec point;         /* of contact */
+    double slip;       /* velocity of a against b along `along` at the point [m/s] */
+    double margin;     /* how far the foot is inside the side or the corner's cone [m]; negative: no contact here */
+} Gap;
+
+/* A body at one moment, as the gap functions want it. */
+typedef struct Placed {
+    Pose at;
+    Vec v;
+    double spin;
+} Placed;
+
+static inline Placed placed(const State *s) { return (Placed){pose(s->p, s->angle), s->v, s->spin}; }
+
+/* Ways in which two shapes can touch, to be counted through; false for a number that is none (a dent's corner). */
+int32_t feature_count(const World *world, int32_t shape_a, int32_t shape_b);
+bool feature_make(const World *world, int32_t shape_a, int32_t shape_b, int32_t number, Feature *out);
+
+Gap feature_gap(const Feature *f, const Placed *a, const Placed *b);
+
+/* The part of the gap's second derivative, and of the slip's first, that does not come from the bodies'
+ * accelerations: centripetal terms and the turning of the normal [m/s^2]. */
+void feature_bias(const Feature *f, const Placed *a, const Placed *b, double *normal_bias, double *along_bias);
+
+bool feature_same(const Feature *f, const Feature *g);
+
+#endif

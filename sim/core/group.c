@@ -1,0 +1,321 @@
+/* What happens to the bodies about an event. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "exact.h"
+
+#define MOST_CONTACTS 48       /* of a group in motion: beyond that the crowd is cheaper */
+#define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
+#define BOUNCE 0.1             /* bounces lower than this part of the tolerance are not followed */
+
+/* ---------------------------------------------------------------- who is in it */
+
+static int touching_pair(Exact *e, int32_t a, const State *sa, int32_t b, const State *sb, int32_t *count) {
+    for (;;) {
+        *count = touching_now(e->world, a, sa, b, sb, &e->slack, e->touching, e->touching_capacity);
+        if (*count < e->touching_capacity) return SIM_OK;
+        int32_t capacity = e->touching_capacity ? 2 * e->touching_capacity : 16;
+        Touching *grown = realloc(e->touching, (size_t)capacity * sizeof *grown);
+        if (!grown) return SIM_OUT_OF_MEMORY;
+        e->touching = grown;
+        e->touching_capacity = capacity;
+    }
+}
+
+static void add_member(Exact *e, int32_t body, double time) {
+    Track *track = &e->track[body];
+    record_motion(e->recorder, body, &track->motion, time);
+    State state = motion_state(&track->motion, time);
+    system_add_body(&e->group, body, &state);
+}
+
+static bool is_joined(const World *world, int32_t a, int32_t b) {
+    for (int32_t j = 0; j < world->joint_count; j++) {
+        const Joint *joint = &world->joint[j];
+        if ((joint->a == a && joint->b == b) || (joint->a == b && joint->b == a)) return true;
+    }
+    return false;
+}
+
+int group_gather(Exact *e, int32_t body, double time) {
+    World *world = e->world;
+    int32_t head = e->group.count;
+    if (e->group.place_of[body] < 0) add_member(e, body, time);
+    for (; head < e->group.count; head++) {
+        int32_t i = e->group.member[head];
+        for (int32_t j = 1; j < world->body_count; j++) {
+            if (e->group.place_of[j] >= 0 || world->body[j].mode == MODE_CROWD) continue;
+            bool held = (e->track[i].island >= 0 && e->track[i].island == e->track[j].island) ||
+                        (world->joint_count > 0 && is_joined(world, i, j));
+            if (!held) {
+                State other = motion_state(&e->track[j].motion, time);
+                double reach = world->body[i].reach + world->body[j].reach + e->slack.gap;
+                Vec apart = vsub(other.p, e->group.state[head].p);
+                if (vdot(apart, apart) > reach * reach) continue;
+                int32_t count;
+                int status = touching_pair(e, i, &e->group.state[head], j, &other, &count);
+                if (status != SIM_OK) return status;
+                held = count > 0;
+            }
+            if (held) add_member(e, j, time);
+        }
+    }
+    return SIM_OK;
+}
+
+static int find_contacts(Exact *e) {
+    System *g = &e->group;
+    static const State still = {0};
+    for (int32_t i = 0; i < g->count; i++)
+        for (int32_t j = i; j < g->count; j++) { /* j = i stands for the background */
+            int32_t other = j == i ? 0 : g->member[j], count;
+            int status = touching_pair(e, g->member[i], &g->state[i], other, j == i ? &still : &g->state[j], &count);
+            for (int32_t k = 0; k < count && status == SIM_OK; k++) {
+                const Touching *t = &e->touching[k];
+                const Shape *a = &e->world->shape[t->feature.shape_a], *b = &e->world->shape[t->feature.shape_b];
+                Contact contact = {.feature = t->feature, .friction = pair_friction(a, b), .elasticity = pair_elasticity(a, b),
+                                   .hold = fmax(fmin(t->gap.gap, e->slack.gap), -e->slack.gap)};
+                status = system_add_contact(g, &contact);
+            }
+            if (status != SIM_OK) return status;
+        }
+    return SIM_OK;
+}
+
+/* ---------------------------------------------------------------- what happens */
+
+/* Bounces that come ever faster end where they would: one whose height stays within a part of the tolerance is none.  Where
+ * nothing pulls the pair together there is no height, and every bounce counts. */
+static int settle_low_bounces(Exact *e, double time) {
+    System *g = &e->group;
+    int status = system_place(g);
+    if (status != SIM_OK) return status;
+    system_find_bias(g);
+    for (int32_t i = 0; i < g->count; i++) {
+        const Motion *m = &e->track[g->member[i]].motion;
+        double x = (time - m->start) / m->span;
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+            for (int d = m->degree; d >= 1; d--) sum = sum * x + d * m->v[c][d];
+            e->acceleration[3 * i + c] = sum / m->span;
+        }
+    }
+    for (int32_t k = 0; k < g->contact_count; k++) {
+        Contact *c = &g->contact[k];
+        const Row *row = contact_row(g, k);
+        double pull = -row->bias, bounce = c->elasticity * row_speed(row, g->state);
+        for (int i = 0; i < 3; i++) {
+            if (row->a >= 0) pull -= row->ja[i] * e->acceleration[3 * row->a + i];
+            if (row->b >= 0) pull -= row->jb[i] * e->acceleration[3 * row->b + i];
+        }
+        if (pull > 0 && bounce * bounce < 2 * pull * BOUNCE * e->tolerance) c->elasticity = 0;
+    }
+    return SIM_OK;
+}
+
+static int resolve(Exact *e, double time) {
+    System *g = &e->group;
+    if (g->contact_count > e->impulse_capacity) {
+        free(e->impulse);
+        e->impulse_capacity = 2 * g->contact_count;
+        e->impulse = malloc((size_t)e->impulse_capacity * sizeof *e->impulse);
+        if (!e->impulse) return e->impulse_capacity = 0, SIM_OUT_OF_MEMORY;
+    }
+    for (int32_t k = 0; k < g->contact_count; k++) e->impulse[k] = vec(0, 0);
+    int32_t rounds = 0;
+    int status = resolve_impacts(&e->solver, g, &e->slack, e->impulse, &rounds);
+    e->world->profile.impacts += rounds > 0;
+    for (int32_t k = 0; k < g->contact_count && status == SIM_OK; k++) {
+        const Row *row = contact_row(g, k);
+        Vec p = e->impulse[k];
+        if (p.x == 0 && p.y == 0) continue;
+        const Feature *f = &g->contact[k].feature;
+        int32_t a = g->place_of[f->body_a], b = g->place_of[f->body_b];
+        Placed still = {{{0, 0}, 1, 0}, {0, 0}, 0};
+        Gap gap = feature_gap(f, a >= 0 ? &g->placed[a] : &still, b >= 0 ? &g->placed[b] : &still);
+        SimEvent event = {.time = time, .kind = SIM_IMPACT,
+                          .body = {e->world->shape[f->shape_b].source, e->world->shape[f->shape_a].source},
+                          .point = {gap.point.x, gap.point.y},
+                          .impulse = {p.x * row[0].ja[0] + p.y * row[1].ja[0], p.x * row[0].ja[1] + p.y * row[1].ja[1]}};
+        if (row->a < 0) event.impulse[0] = -p.x * row[0].jb[0] - p.y * row[1].jb[0],
+                        event.impulse[1] = -p.x * row[0].jb[1] - p.y * row[1].jb[1];
+        status = record_event(e->recorder, &event);
+    }
+    return status;
+}
+
+/* Keep the contacts that press. */
+static void drop_inactive(System *g) {
+    int32_t kept = 0;
+    for (int32_t k = 0; k < g->contact_count; k++)
+        if (g->contact[k].active) g->contact[kept++] = g->contact[k];
+    g->contact_count = kept;
+}
+
+/* ---------------------------------------------------------------- how they go on */
+
+static int32_t find_root(int32_t *root, int32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+}
+
+static void unite(int32_t *root, int32_t i, int32_t j) {
+    if (i < 0 || j < 0) return;
+    i = find_root(root, i), j = find_root(root, j);
+    if (i != j) root[i > j ? i : j] = i < j ? i : j;
+}
+
+static void partition(Exact *e) {
+    System *g = &e->group;
+    for (int32_t i = 0; i < g->count; i++) e->root[i] = i;
+    for (int32_t k = 0; k < g->joint_count; k++) {
+        const Joint *joint = &e->world->joint[g->joint[k]];
+        unite(e->root, g->place_of[joint->a], g->place_of[joint->b]);
+    }
+    for (int32_t k = 0; k < g->contact_count; k++)
+        unite(e->root, g->place_of[g->contact[k].feature.body_a], g->place_of[g->contact[k].feature.body_b]);
+}
+
+static Island *new_island(Exact *e, int32_t *index) {
+    for (*index = 0; *index < e->island_count && e->island[*index].in_use; ++*index) {}
+    if (*index == e->island_count) e->island_count++;
+    Island *island = &e->island[*index];
+    island->in_use = true;
+    island->member_count = island->contact_count = 0;
+    island->step = 0.05;
+    return island;
+}
+
+static int island_add(Island *island, const int32_t *member, const Contact *contact) {
+    if (member) {
+        if (island->member_count == island->member_capacity) {
+            int32_t capacity = island->member_capacity ? 2 * island->member_capacity : 8;
+            int32_t *grown = realloc(island->member, (size_t)capacity * sizeof *grown);
+            if (!grown) return SIM_OUT_OF_MEMORY;
+            island->member = grown;
+            island->member_capacity = capacity;
+        }
+        island->member[island->member_count++] = *member;
+    }
+    if (contact) {
+        if (island->contact_count == island->contact_capacity) {
+            int32_t capacity = island->contact_capacity ? 2 * island->contact_capacity : 8;
+            Contact *grown = realloc(island->contact, (size_t)capacity * sizeof *grown);
+            if (!grown) return SIM_OUT_OF_MEMORY;
+            island->contact = grown;
+            island->contact_capacity = capacity;
+        }
+        island->contact[island->contact_count++] = *contact;
+    }
+    return SIM_OK;
+}
+
+static bool touches_root(Exact *e, const Contact *c, int32_t root) {
+    int32_t a = e->group.place_of[c->feature.body_a], b = e->group.place_of[c->feature.body_b];
+    return (a >= 0 && find_root(e->root, a) == root) || (b >= 0 && find_root(e->root, b) == root);
+}
+
+static bool is_held(Exact *e, int32_t root) {
+    System *g = &e->group;
+    for (int32_t k = 0; k < g->contact_count; k++)
+        if (touches_root(e, &g->contact[k], root)) return true;
+    for (int32_t k = 0; k < g->joint_count; k++) {
+        const Joint *joint = &e->world->joint[g->joint[k]];
+        int32_t a = g->place_of[joint->a], b = g->place_of[joint->b];
+        if ((a >= 0 && find_root(e->root, a) == root) || (b >= 0 && find_root(e->root, b) == root)) return true;
+    }
+    return false;
+}
+
+static bool is_at_rest(Exact *e, int32_t root) {
+    System *g = &e->group;
+    double gravity = vlength(e->world->gravity), none = 1e-9 * (gravity > 0 ? gravity : 1);
+    for (int32_t i = 0; i < g->count; i++) {
+        if (find_root(e->root, i) != root) continue;
+        const State *s = &g->state[i];
+        const double *a = &e->acceleration[3 * i];
+        double reach = e->world->body[g->member[i]].reach;
+        if (vlength(s->v) > 4 * e->slack.speed || fabs(s->spin) * reach > 4 * e->slack.speed) return false;
+        if (hypot(a[0], a[1]) > none || fabs(a[2]) * reach > none) return false;
+    }
+    return true;
+}
+
+/* Set the part of the group with this root on its way: at rest, in flight, or in smooth motion. */
+static int send_off(Exact *e, int32_t root, double time) {
+    System *g = &e->group;
+    bool held = is_held(e, root), rest = is_at_rest(e, root);
+    Island *island = NULL;
+    int32_t index = -1;
+    if (held && !rest) island = new_island(e, &index);
+    int status = SIM_OK;
+    for (int32_t i = 0; i < g->count && status == SIM_OK; i++) {
+        if (find_root(e->root, i) != root) continue;
+        int32_t body = g->member[i];
+        Track *track = &e->track[body];
+        State state = g->state[i];
+        if (rest) state.v = vec(0, 0), state.spin = 0;
+        track->motion = rest ? motion_at_rest(&state, time) : motion_in_flight(&state, time, e->world->gravity);
+        track->island = index;
+        e->changed[body] = true;
+        e->world->body[body].mode = rest ? MODE_REST : held ? MODE_SMOOTH : MODE_FLIGHT;
+        if (island) status = island_add(island, &body, NULL);
+    }
+    e->world->profile.rests += rest && held;
+    e->world->profile.flights += !rest && !held;
+    for (int32_t k = 0; island && k < g->contact_count && status == SIM_OK; k++)
+        if (touches_root(e, &g->contact[k], root)) status = island_add(island, NULL, &g->contact[k]);
+    if (island && status == SIM_OK) status = island_advance(e, index, time);
+    return status;
+}
+
+void group_send_to_crowd(Exact *e, double time) {
+    for (int32_t i = 0; i < e->group.count; i++) {
+        int32_t member = e->group.member[i];
+        Body *body = &e->world->body[member];
+        if (e->track[member].island >= 0) island_dissolve(e, e->track[member].island);
+        set_body_state(body, &e->group.state[i]);
+        body->mode = MODE_CROWD;
+        e->changed[member] = true;
+        e->track[member].touch_time = INFINITY;
+        e->track[member].motion.end = -1; /* the mark of a body that the crowd carries */
+        record_state(e->recorder, member, time);
+    }
+}
+
+static bool all_still(const Exact *e) {
+    for (int32_t i = 0; i < e->group.count; i++) {
+        const State *s = &e->group.state[i];
+        double reach = e->world->body[e->group.member[i]].reach;
+        if (vlength(s->v) > e->slack.speed || fabs(s->spin) * reach > e->slack.speed) return false;
+    }
+    return true;
+}
+
+int group_reform(Exact *e, double time) {
+    System *g = &e->group;
+    e->world->profile.events += 1;
+    for (int32_t i = 0; i < g->count; i++)
+        if (e->track[g->member[i]].island >= 0) island_dissolve(e, e->track[g->member[i]].island);
+    bool crowded = e->world->body[g->member[0]].mode == MODE_CROWD;
+    int status = crowded ? SIM_OK : find_contacts(e);
+    if (status != SIM_OK) return status;
+    if (crowded || g->contact_count > (all_still(e) ? MOST_CONTACTS_REST : MOST_CONTACTS)) {
+        group_send_to_crowd(e, time);
+        return SIM_OK;
+    }
+    system_find_joints(g);
+    status = settle_low_bounces(e, time);
+    if (status == SIM_OK) status = resolve(e, time);
+    if (status == SIM_OK) status = find_modes(&e->solver, g, &e->slack, e->acceleration);
+    if (status == SIM_BAD_INPUT) { /* contacts that admit no rigid motion: the crowd's soft ones do */
+        group_send_to_crowd(e, time);
+        return SIM_OK;
+    }
+    if (status != SIM_OK) return status;
+    drop_inactive(g);
+    partition(e);
+    for (int32_t i = 0; i < g->count && status == SIM_OK; i++)
+        if (find_root(e->root, i) == i) status = send_off(e, i, time);
+    return status;
+}

@@ -1,0 +1,73 @@
+#include "motion.h"
+
+State body_state(const Body *body) { return (State){body->position, body->angle, body->velocity, body->spin}; }
+
+void set_body_state(Body *body, const State *state) {
+    body->position = state->p;
+    body->angle = state->angle;
+    body->velocity = state->v;
+    body->spin = state->spin;
+}
+
+Motion motion_at_rest(const State *state, double time) {
+    Motion m = {.start = time, .end = INFINITY, .span = 1, .degree = 0};
+    m.q[0][0] = state->p.x, m.q[1][0] = state->p.y, m.q[2][0] = state->angle;
+    return m;
+}
+
+Motion motion_in_flight(const State *state, double time, Vec gravity) {
+    Motion m = motion_at_rest(state, time);
+    const double v[3] = {state->v.x, state->v.y, state->spin}, g[3] = {gravity.x, gravity.y, 0};
+    m.degree = 2;
+    for (int k = 0; k < 3; k++) {
+        m.q[k][1] = m.v[k][0] = v[k];
+        m.q[k][2] = g[k] / 2;
+        m.v[k][1] = g[k];
+    }
+    return m;
+}
+
+static double horner(const double *c, int degree, double x) {
+    double sum = c[degree];
+    for (int k = degree - 1; k >= 0; k--) sum = sum * x + c[k];
+    return sum;
+}
+
+State motion_state(const Motion *m, double time) {
+    double x = (time - m->start) / m->span;
+    int d = m->degree;
+    return (State){vec(horner(m->q[0], d, x), horner(m->q[1], d, x)), horner(m->q[2], d, x),
+                   vec(horner(m->v[0], d, x), horner(m->v[1], d, x)), horner(m->v[2], d, x)};
+}
+
+/* The largest |value| and |slope| of a polynomial for arguments in [0, x]: sums of the coefficients' sizes. */
+static void polynomial_bound(const double *c, int degree, double x, double *value, double *slope) {
+    double power = 1;
+    *value = fabs(c[0]);
+    *slope = 0;
+    for (int k = 1; k <= degree; k++) {
+        *slope += k * fabs(c[k]) * power;
+        power *= x;
+        *value += fabs(c[k]) * power;
+    }
+}
+
+MotionBound motion_bound(const Motion *m, double from, double to) {
+    MotionBound bound = {.is_steady = m->degree <= 2};
+    if (m->degree == 0) return bound;
+    double value[3], slope[3];
+    if (bound.is_steady) { /* the speed of a parabola is greatest at one of the ends */
+        State a = motion_state(m, from), b = motion_state(m, to);
+        bound.speed = fmax(vlength(a.v), vlength(b.v));
+        bound.spin = fabs(a.spin);
+        bound.steady = vec(m->v[0][1], m->v[1][1]);
+        bound.acceleration = vlength(bound.steady);
+        return bound;
+    }
+    for (int k = 0; k < 3; k++) polynomial_bound(m->v[k], m->degree, (to - m->start) / m->span, &value[k], &slope[k]);
+    bound.speed = hypot(value[0], value[1]);
+    bound.spin = value[2];
+    bound.acceleration = hypot(slope[0], slope[1]) / m->span;
+    bound.spin_acceleration = slope[2] / m->span;
+    return bound;
+}

@@ -1,0 +1,45 @@
+/* Motion in closed form: a body's pose and velocity as polynomials of time over a stretch.
+ *
+ * Free flight is a polynomial of degree 2, rest one of degree 0, and a step of the integrator one of degree 7, so that
+ * whatever asks where a body is, or when two bodies touch, asks one kind of thing.
+ */
+#ifndef MOTION_H
+#define MOTION_H
+
+#include "world.h"
+
+#define MOTION_DEGREE 7
+
+/* Pose and velocity of a body at one time. */
+typedef struct State {
+    Vec p;
+    double angle;
+    Vec v;
+    double spin;
+} State;
+
+typedef struct Motion {
+    double start, end; /* [s]; end is INFINITY for flight and rest */
+    double span;       /* the polynomials' argument is (t - start) / span */
+    int degree;
+    double q[3][MOTION_DEGREE + 1]; /* x, y, angle */
+    double v[3][MOTION_DEGREE + 1]; /* vx, vy, spin */
+} Motion;
+
+/* What a motion does at most from one time to another. */
+typedef struct MotionBound {
+    double speed, spin, acceleration, spin_acceleration;
+    Vec steady; /* the acceleration, where it is constant; `acceleration` is then its length */
+    bool is_steady;
+} MotionBound;
+
+State body_state(const Body *body);
+void set_body_state(Body *body, const State *state);
+
+Motion motion_at_rest(const State *state, double time);
+Motion motion_in_flight(const State *state, double time, Vec gravity);
+
+State motion_state(const Motion *motion, double time);
+MotionBound motion_bound(const Motion *motion, double from, double to);
+
+#endif

@@ -1,0 +1,66 @@
+#include "record.h"
+
+#include <stdlib.h>
+
+int recorder_create(Recorder *r, const World *world, const SimOptions *options, double *frames) {
+    *r = (Recorder){.world = world, .fps = options->fps, .sample_count = options->sample_count, .frames = frames};
+    r->next = calloc((size_t)world->body_count, sizeof *r->next);
+    return r->next ? SIM_OK : SIM_OUT_OF_MEMORY;
+}
+
+void recorder_destroy(Recorder *r) {
+    free(r->next);
+    free(r->event);
+    *r = (Recorder){0};
+}
+
+/* One sample of the sources that a body carries. */
+static void write_sample(Recorder *r, int32_t body, int64_t k, const State *state) {
+    const World *world = r->world;
+    const Body *b = &world->body[body];
+    double *frame = r->frames + k * 6 * world->source_count;
+    bool alone = b->shape_count == 1; /* then the source's frame is the body's */
+    Pose at = alone ? (Pose){state->p, 1, 0} : pose(state->p, state->angle);
+    for (int32_t i = b->first_shape; i < b->first_shape + b->shape_count; i++) {
+        const Shape *shape = &world->shape[i];
+        double *out = frame + 6 * shape->source;
+        Vec arm = alone ? vec(0, 0) : turn(at, shape->offset);
+        out[0] = state->p.x + arm.x, out[1] = state->p.y + arm.y;
+        out[2] = state->angle + (alone ? 0 : shape->turned);
+        out[3] = state->v.x - state->spin * arm.y, out[4] = state->v.y + state->spin * arm.x;
+        out[5] = state->spin;
+    }
+}
+
+void record_motion(Recorder *r, int32_t body, const Motion *motion, double time) {
+    int64_t k = r->next[body];
+    if (motion->degree == 0) {
+        State state = motion_state(motion, motion->start);
+        for (; k < r->sample_count && (double)k / r->fps < time; k++) write_sample(r, body, k, &state);
+    } else {
+        for (; k < r->sample_count && (double)k / r->fps < time; k++) {
+            State state = motion_state(motion, (double)k / r->fps);
+            write_sample(r, body, k, &state);
+        }
+    }
+    r->next[body] = k;
+}
+
+void record_state(Recorder *r, int32_t body, double time) {
+    State state = body_state(&r->world->body[body]);
+    int64_t k = r->next[body];
+    for (; k < r->sample_count && (double)k / r->fps <= time; k++) write_sample(r, body, k, &state);
+    r->next[body] = k;
+}
+
+int record_event(Recorder *r, const SimEvent *event) {
+    if (r->event_count == r->event_capacity) {
+        int64_t capacity = r->event_capacity ? 2 * r->event_capacity : 64;
+        SimEvent *grown = realloc(r->event, (size_t)capacity * sizeof *grown);
+        if (!grown) return SIM_OUT_OF_MEMORY;
+        r->event = grown;
+        r->event_capacity = capacity;
+    }
+    r->event[r->event_count++] = *event;
+    return SIM_OK;
+}

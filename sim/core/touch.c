@@ -1,0 +1,193 @@
+/* The search for the first touch steps through time, all features of a pair at once.  Each feature's gap g with a bound
+ * K on its second derivative cannot close before g + g' dt - K dt^2 / 2 = 0 does, so the least such dt over the features
+ * is a step that nothing can be missed in, at any speed (conservative advancement, Mirtich 1996, with a bound of the
+ * second order).  For free flight against a wall the bound is the motion itself and a step lands on the root; near any
+ * root the steps converge as Newton's do. */
+#include "touch.h"
+
+#define MAX_STEPS 4000
+
+/* ---------------------------------------------------------------- bounds */
+
+typedef struct PairBound {
+    double steer_ab, steer_ba; /* |second derivative| of a gap with the side on b, on a */
+    double closing;            /* speed of the points against each other */
+} PairBound;
+
+/* Bounds over [from, to] for two movers whose shapes reach ra and rb from their centres. */
+static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, double rb, double distance, double from, double to) {
+    MotionBound a = motion_bound(ma, from, to), b = motion_bound(mb, from, to);
+    double relative = a.is_steady && b.is_steady ? vlength(vsub(a.steady, b.steady)) : a.acceleration + b.acceleration;
+    double swing_a = a.spin * a.spin + a.spin_acceleration, swing_b = b.spin * b.spin + b.spin_acceleration;
+    double points = relative + ra * swing_a + rb * swing_b;
+    PairBound bound;
+    bound.closing = a.speed + b.speed + ra * a.spin + rb * b.spin;
+    double apart = distance + ra + rb + (a.speed + b.speed) * (to - from); /* |rho| at most */
+    bound.steer_ab = points + 2 * b.spin * bound.closing + swing_b * apart;
+    bound.steer_ba = points + 2 * a.spin * bound.closing + swing_a * apart;
+    return bound;
+}
+
+/* How long the bound on a pair may look ahead before its terms in the distance grow useless. */
+static double look_ahead(const Motion *ma, const Motion *mb, double from, double to) {
+    double limit = to - from;
+    for (int k = 0; k < 2; k++) {
+        const Motion *m = k ? mb : ma;
+        if (m->degree == 0) continue;
+        double spin = m->degree <= 2 ? fabs(m->v[2][0]) : motion_bound(m, from, fmin(to, m->end)).spin;
+        if (spin * limit > 0.5) limit = 0.5 / spin;
+    }
+    return from + limit;
+}
+
+/* The longest dt for which gap + rate dt - steer dt^2 / 2 stays above 0. */
+static double safe_step(double gap, double rate, double steer) {
+    double root = sqrt(rate * rate + 2 * steer * gap);
+    if (rate < 0) return 2 * gap / (root - rate);
+    return steer > 0 ? (rate + root) / steer : INFINITY;
+}
+
+/* ---------------------------------------------------------------- the search */
+
+typedef struct Search {
+    const World *world;
+    const Slack *slack;
+    Mover a, b;
+    const Feature *const *closed;
+    int32_t closed_count;
+    double distance; /* between the centres where the search starts */
+} Search;
+
+static bool is_closed(const Search *s, const Feature *f) {
+    for (int32_t k = 0; k < s->closed_count; k++)
+        if (feature_same(s->closed[k], f)) return true;
+    return false;
+}
+
+/* How far in time one feature is safe, from its gap now: 0 when it touches. */
+static double feature_step(const Slack *slack, const Gap *g, const PairBound *bound, double steer) {
+    double aside = -g->margin - slack->gap; /* how far the foot is from where a touch could be */
+    double until_margin = aside > 0 ? aside / bound->closing : 0;
+    if (aside <= 0 && g->gap <= slack->root && g->gap > -3 * slack->gap && g->rate < -slack->speed) return 0;
+    if (aside <= 0 && g->gap < -slack->gap && g->gap > -3 * slack->gap && g->rate < -1e-6 * slack->speed) return 0;
+    double step;
+    if (g->gap > slack->root || (g->gap > -3 * slack->gap && g->rate > slack->speed)) /* clear, or on its way out */
+        step = safe_step(fmax(g->gap, 0), g->rate, steer);
+    else if (g->gap > -3 * slack->gap) /* grazing: it matters again when it has gone in by the slack, or come free */
+        step = fmax(safe_step(fmax(g->gap + 2 * slack->gap, slack->gap), 0, steer), 1e-9);
+    else /* behind the side: it has to come in front of it first */
+        step = fmax(safe_step(-g->gap, -g->rate, steer), 1e-5);
+    return fmax(step, until_margin);
+}
+
+/* The safe step of all features of two shapes. */
+static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, const Placed *pa, const Placed *pb,
+                          const PairBound *bound, double step) {
+    int32_t ia = (int32_t)(sa - s->world->shape), ib = (int32_t)(sb - s->world->shape);
+    Vec apart = vsub(place(pa->at, sa->centre), place(pb->at, sb->centre));
+    double discs = vlength(apart) - sa->reach - sb->reach;
+    if (discs > step * bound->closing) return step;
+    int32_t count = feature_count(s->world, ia, ib);
+    for (int32_t k = 0; k < count && step > 0; k++) {
+        Feature f;
+        if (!feature_make(s->world, ia, ib, k, &f) || is_closed(s, &f)) continue;
+        bool a_first = f.body_a == s->a.body;
+        Gap g = feature_gap(&f, a_first ? pa : pb, a_first ? pb : pa);
+        step = fmin(step, feature_step(s->slack, &g, bound, f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba)
+                                                                       : fmin(bound->steer_ab, bound->steer_ba)));
+    }
+    return step;
+}
+
+static double search_shapes(const Search *s, const Shape *sa, const Shape *sb, double from, double to) {
+    double t = from, horizon = from;
+    PairBound bound = {0};
+    double ra = vlength(sa->centre) + sa->reach, rb = vlength(sb->centre) + sb->reach;
+    for (int32_t steps = 0; steps < MAX_STEPS; steps++) {
+        State state_a = motion_state(s->a.motion, t), state_b = motion_state(s->b.motion, t);
+        Placed pa = placed(&state_a), pb = placed(&state_b);
+        if (t >= horizon) {
+            horizon = look_ahead(s->a.motion, s->b.motion, t, to);
+            bound = pair_bound(s->a.motion, ra, s->b.motion, rb, vlength(vsub(state_a.p, state_b.p)), t, horizon);
+            if (bound.closing == 0) return INFINITY;
+        }
+        double step = shapes_step(s, sa, sb, &pa, &pb, &bound, horizon - t);
+        if (step <= 0) return t;
+        if (t + step >= to) return INFINITY;
+        double next = fmin(t + step, horizon);
+        t = next > t ? next : nextafter(t, INFINITY);
+    }
+    return t;
+}
+
+double first_touch(const World *world, Mover a, Mover b, double from, double to, const Slack *slack,
+                   const Feature *const *closed, int32_t closed_count) {
+    Search s = {world, slack, a, b, closed, closed_count, 0};
+    const Body *body_a = &world->body[a.body], *body_b = &world->body[b.body];
+    double best = INFINITY;
+    for (int32_t i = body_a->first_shape; i < body_a->first_shape + body_a->shape_count; i++)
+        for (int32_t j = body_b->first_shape; j < body_b->first_shape + body_b->shape_count; j++) {
+            if (!world_collides(world, i, j)) continue;
+            double t = search_shapes(&s, &world->shape[i], &world->shape[j], from, fmin(to, best));
+            if (t < best) best = t;
+        }
+    return best;
+}
+
+/* ---------------------------------------------------------------- touching now */
+
+/* Whether a's corner sits on b's side from outside: both sides of the corner lead away from b's side. */
+static bool leads_away(const World *world, const Feature *f, const Placed *a, Vec normal) {
+    const Shape *shape = &world->shape[f->shape_a];
+    if (shape->count == 1) return true;
+    const Vec *v = &world->vertex[shape->first];
+    int32_t n = shape->count;
+    for (int32_t k = 0; k < 2; k++) {
+        Vec to = vsub(v[(f->index_a + (k ? 1 : n - 1)) % n], v[f->index_a]);
+        if (vdot(turn(a->at, to), normal) < -1e-6 * vlength(to)) return false;
+    }
+    return true;
+}
+
+/* Drop the one of two touches at one point that says nothing new: the same touch seen from both sides, or a corner on
+ * a corner, where the side that is approached faster, else the outer one, holds. */
+static bool merge_same_point(Touching *out, int32_t count, const Touching *found, double near) {
+    for (int32_t k = 0; k < count; k++) {
+        Touching *had = &out[k];
+        bool same_pair = (had->feature.shape_a == found->feature.shape_a && had->feature.shape_b == found->feature.shape_b) ||
+                         (had->feature.shape_a == found->feature.shape_b && had->feature.shape_b == found->feature.shape_a);
+        if (!same_pair || vlength(vsub(had->gap.point, found->gap.point)) > near) continue;
+        if (fabs(vdot(had->gap.normal, found->gap.normal)) < 1 - 1e-9) {
+            double faster = had->gap.rate - found->gap.rate;
+            if (faster > near || (faster > -near && found->gap.gap > had->gap.gap + 1e-3 * near)) *had = *found;
+        }
+        return true;
+    }
+    return false;
+}
+
+int32_t touching_now(const World *world, int32_t body_a, const State *state_a, int32_t body_b, const State *state_b,
+                     const Slack *slack, Touching *out, int32_t capacity) {
+    const Body *a = &world->body[body_a], *b = &world->body[body_b];
+    Placed pa = placed(state_a), pb = placed(state_b);
+    int32_t count = 0;
+    for (int32_t i = a->first_shape; i < a->first_shape + a->shape_count; i++)
+        for (int32_t j = b->first_shape; j < b->first_shape + b->shape_count; j++) {
+            const Shape *sa = &world->shape[i], *sb = &world->shape[j];
+            Vec apart = vsub(place(pa.at, sa->centre), place(pb.at, sb->centre));
+            double reach = sa->reach + sb->reach + slack->gap;
+            if (vdot(apart, apart) > reach * reach || !world_collides(world, i, j)) continue;
+            int32_t features = feature_count(world, i, j);
+            for (int32_t k = 0; k < features; k++) {
+                Touching t;
+                if (!feature_make(world, i, j, k, &t.feature)) continue;
+                bool a_first = t.feature.body_a == body_a;
+                const Placed *point_of = a_first ? &pa : &pb;
+                t.gap = feature_gap(&t.feature, point_of, a_first ? &pb : &pa);
+                if (fabs(t.gap.gap) > 4 * slack->gap || t.gap.gap > slack->gap || t.gap.margin < -slack->gap) continue;
+                if (!leads_away(world, &t.feature, point_of, t.gap.normal)) continue;
+                if (count < capacity && !merge_same_point(out, count, &t, 8 * slack->gap)) out[count++] = t;
+            }
+        }
+    return count;
+}

@@ -1,0 +1,35 @@
+/* When two bodies first touch, and where they touch now. */
+#ifndef TOUCH_H
+#define TOUCH_H
+
+#include "feature.h"
+
+/* Lengths and speeds below which two things are the same, set once for a run from its tolerance. */
+typedef struct Slack {
+    double gap;   /* a gap this small counts as closed [m] */
+    double speed; /* a speed this small counts as none [m/s] */
+    double root;  /* a gap is solved for to this [m]: rounding */
+} Slack;
+
+typedef struct Touching {
+    Feature feature;
+    Gap gap;
+} Touching;
+
+/* A body's motion, for the search. */
+typedef struct Mover {
+    int32_t body;
+    const Motion *motion;
+} Mover;
+
+/* The first time in [from, to] at which a feature of the two bodies that is not among `closed` touches; INFINITY if none.
+ * A search that takes too many steps gives up at a time before which nothing touches, and returns that. */
+double first_touch(const World *world, Mover a, Mover b, double from, double to, const Slack *slack,
+                   const Feature *const *closed, int32_t closed_count);
+
+/* The features of two bodies that touch now, at most `capacity`; their number is returned.  Where a pair of features
+ * is the same touch seen from both sides, one is given. */
+int32_t touching_now(const World *world, int32_t body_a, const State *a, int32_t body_b, const State *b,
+                     const Slack *slack, Touching *out, int32_t capacity);
+
+#endif
