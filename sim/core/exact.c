@@ -4,6 +4,8 @@
 
 #define BUCKET_LIMIT 400.0 /* events of one body that may come in a burst */
 #define BUCKET_LEAK 200.0  /* and a second in the long run */
+#define PAIRS_A_SECOND 64.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
+#define PAIRS_OF_FEW 4e6    /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
 int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, double end) {
     size_t n = (size_t)world->body_count;
@@ -79,6 +81,7 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     int32_t closed = closed_features(e, a, b);
     Mover ma = {a, &ta->motion}, mb = {b, &tb->motion};
     e->world->profile.pairs += 1;
+    e->spent += 1;
     double t = first_touch(e->world, ma, mb, from, to, &e->slack, e->closed, closed);
     if (t < ta->touch_time) ta->touch_time = t, ta->partner = b;
     if (b != 0 && t < tb->touch_time) tb->touch_time = t, tb->partner = a;
@@ -150,6 +153,28 @@ static bool overflows(Exact *e, int32_t body, double time) {
     t->bucket = fmax(0, t->bucket - BUCKET_LEAK * (time - t->bucket_time)) + 1;
     t->bucket_time = time;
     return t->bucket > BUCKET_LIMIT;
+}
+
+/* Whether the search for touches costs more than stepping all bodies as a crowd would.  An event asks about all bodies, a
+ * crowd's step about neighbours: few bodies may have many events, many bodies only few. */
+static bool is_over_budget(Exact *e, double time) {
+    double n = e->world->body_count, leak = PAIRS_A_SECOND * n + PAIRS_OF_FEW / n;
+    e->spent = fmax(0, e->spent - leak * (time - e->spent_time));
+    e->spent_time = time;
+    return e->spent > 0.5 * leak;
+}
+
+/* Everything that is about to touch something goes to the crowd. */
+static int hand_over_all(Exact *e, double time) {
+    int status = SIM_OK;
+    e->world->profile.budget_spent += 1;
+    e->spent = 0;
+    system_clear(&e->group);
+    for (int32_t i = 1; i < e->world->body_count && status == SIM_OK; i++)
+        if (is_tracked(e, i) && e->world->body[i].mode != MODE_REST && e->track[i].touch_time < e->end)
+            status = group_gather(e, i, time);
+    group_send_to_crowd(e, time);
+    return status;
 }
 
 static int handle_touch(Exact *e, int32_t body, double time, bool *crowded) {
@@ -226,6 +251,10 @@ int exact_run(Exact *e, double from, double until, double *reached) {
             status = handle_touch(e, body, time, &crowded);
         }
         if (status == SIM_OK) find_touches(e, time);
+        if (status == SIM_OK && is_over_budget(e, time)) {
+            status = hand_over_all(e, time);
+            crowded = crowded || e->group.count > 0;
+        }
     }
     return status;
 }
@@ -259,6 +288,7 @@ int exact_after_crowd(Exact *e, int32_t body, double from, double to) {
     }
     if (!was_in) return SIM_OK;
     record_state(e->recorder, body, to);
+    if (mode == MODE_FLIGHT && is_over_budget(e, to)) e->world->body[body].mode = mode = MODE_CROWD;
     if (mode == MODE_CROWD) return SIM_OK;
     State state = body_state(&e->world->body[body]);
     *track = (Track){.motion = mode == MODE_REST ? motion_at_rest(&state, to) : motion_in_flight(&state, to, e->world->gravity),

@@ -50,6 +50,7 @@ typedef struct Exact {
     const Feature **closed;
     int32_t closed_capacity;
     bool *changed;
+    double spent, spent_time; /* pairs looked at lately, for the budget */
 } Exact;
 
 int exact_create(Exact *exact, World *world, Recorder *recorder, double tolerance, double end);

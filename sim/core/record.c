@@ -19,7 +19,7 @@ static void write_sample(Recorder *r, int32_t body, int64_t k, const State *stat
     const World *world = r->world;
     const Body *b = &world->body[body];
     double *frame = r->frames + k * 6 * world->source_count;
-    bool alone = b->shape_count == 1; /* then the source's frame is the body's */
+    bool alone = body != 0 && b->shape_count == 1; /* then the source's frame is the body's */
     Pose at = alone ? (Pose){state->p, 1, 0} : pose(state->p, state->angle);
     for (int32_t i = b->first_shape; i < b->first_shape + b->shape_count; i++) {
         const Shape *shape = &world->shape[i];

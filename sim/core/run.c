@@ -98,11 +98,7 @@ static int absorb(Sim *sim, double from, double to) {
 /* Step the crowd from `from` to `to`, but not the bodies that entered it at `to`. */
 static int step_crowd(Sim *sim, double from, double to, double tolerance) {
     World *world = &sim->world;
-    if (!sim->crowd) {
-        int status = world_decompose(world);
-        if (status != SIM_OK) return status;
-        if (!(sim->crowd = crowd_create(world))) return SIM_OUT_OF_MEMORY;
-    }
+    if (!sim->crowd && !(sim->crowd = crowd_create(world))) return SIM_OUT_OF_MEMORY;
     for (int32_t i = 1; i < world->body_count; i++)
         if (sim->entering[i]) world->body[i].mode = MODE_SMOOTH;
     double start = now();
@@ -163,7 +159,9 @@ static bool find_energy(const Sim *sim, int64_t samples, const double *frames, d
 int32_t sim_run(Sim *sim, const SimOptions *options, double *frames, double *energy) {
     World *world = &sim->world;
     double start = now(), end = (double)(options->sample_count - 1) / options->fps;
-    int status = world_separate(world, options->tolerance);
+    int status = SIM_OK;
+    if (world->shape_count > 1) status = world_decompose(world);
+    if (status == SIM_OK && world->shape_count > 1) status = world_separate(world, options->tolerance);
     if (status == SIM_OK) status = recorder_create(&sim->recorder, world, options, frames);
     if (status == SIM_OK) status = exact_create(&sim->exact, world, &sim->recorder, options->tolerance, end);
     if (status == SIM_OK) status = advance(sim, options, end);
