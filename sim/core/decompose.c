@@ -240,6 +240,7 @@ int polygon_cut(Cutting *cutting, const Vec *vertex, int32_t count) {
 }
 
 int world_decompose(World *world) {
+    if (world->piece) return SIM_OK;
     int32_t room = 0, pieces = 0;
     for (int32_t i = 0; i < world->shape_count; i++) room += 3 * world->shape[i].count;
     world->piece = malloc(((size_t)room + 1) * sizeof *world->piece); /* a triangle has 3 vertices: enough pieces */

@@ -290,8 +290,10 @@ static int move_apart(Separation *s) {
 
 int world_separate(World *world, double tolerance) {
     (void)tolerance;
+    int status = world_decompose(world);
+    if (status != SIM_OK) return status;
     Separation s;
-    int status = create(&s, world);
+    status = create(&s, world);
     if (status == SIM_OK) status = sort_out(&s);
     if (status == SIM_OK && s.deepest > s.touching) {
         status = move_apart(&s);

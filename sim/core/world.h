@@ -91,7 +91,7 @@ static inline double pair_elasticity(const Shape *a, const Shape *b) {
     return a->elasticity > b->elasticity ? a->elasticity : b->elasticity;
 }
 
-/* Fill World.piece and World.piece_vertex: every shape cut into convex pieces (decompose.c). */
+/* Fill World.piece and World.piece_vertex, if they are not yet: every shape cut into convex pieces (decompose.c). */
 int world_decompose(World *world);
 
 /* Move bodies that overlap at the start apart by the least motion (separate.c). */
