@@ -1,4 +1,4 @@
-"""Pixels to draw on: RGB for stills, or the three planes of a video frame, which saves converting each frame.
+"""Pixels to draw on: RGB for stills, or a video frame's own planes, which saves converting each frame.
 
 Coordinates are fixed-point: 1/16 pixel, counted from the centre of the upper left pixel (cv2's convention).
 """
@@ -48,7 +48,7 @@ class Canvas:
     """One picture: planes of pixels that are drawn on alike.
 
     Attributes:
-        planes: a single BGR plane (h, w, 3); or Y (h, w), U and V (h/2, w/2).
+        planes: a single BGR plane (h, w, 3); or brightness Y (h, w) and colours UV (h/2, w/2, 2) (NV12).
     """
 
     planes: tuple[Bytes, ...]
@@ -62,25 +62,20 @@ class Canvas:
 
     @property
     def is_yuv(self) -> bool:
-        return len(self.planes) == 3
+        return len(self.planes) == 2
 
     def to_yuv(self) -> Canvas:
-        """The same picture as Y, U and V, a colour for every 2x2 pixels, sited on their left as in H.264."""
+        """The same picture as Y and UV, a colour for every 2x2 pixels, sited on their left as in H.264."""
         import cv2
 
         (bgr,) = self.planes
-        smooth = cv2.sepFilter2D(
-            bgr,
-            -1,
-            np.array([0.25, 0.5, 0.25]),
-            np.array([0.5, 0.5]),
-            anchor=(1, 0),
-            borderType=cv2.BORDER_REPLICATE,
-        )
-        colors: Any = cv2.transform(np.ascontiguousarray(smooth[::2, ::2]), _UV)
+        half = (bgr.shape[1] // 2, bgr.shape[0] // 2)
+        shifted = cv2.copyMakeBorder(bgr[:, :-1], 0, 0, 1, 0, cv2.BORDER_REPLICATE)
+        left, right = (cv2.resize(x, half, interpolation=cv2.INTER_AREA) for x in (shifted, bgr))
+        smooth = cv2.addWeighted(left, 0.5, right, 0.5, 0)  # columns weigh 1, 2, 1 about an even one
+        colors: Any = cv2.transform(smooth, _UV)
         brightness: Any = cv2.transform(bgr, _Y)
-        u, v = (np.ascontiguousarray(colors[..., k]) for k in (0, 1))
-        return Canvas((brightness, u, v))
+        return Canvas((brightness, colors))
 
     def copy_from(self, other: Canvas, box: Box | None = None) -> None:
         """Take over another canvas of the same kind, or what it has within a box of even sides."""
@@ -92,14 +87,13 @@ class Canvas:
     def views(self, points: Points) -> Iterator[tuple[Bytes, Points, int]]:
         """Every plane with `points` (..., 2) in its own fixed-point coordinates and their bits of fraction.
 
-        A colour plane's rows lie midway between two rows of brightness; half the resolution is one bit more
+        The colours' rows lie midway between two rows of brightness; half the resolution is one bit more
         of fraction.
         """
         yield self.planes[0], points, SHIFT
         if self.is_yuv:
             between = points - _HALF_A_ROW
             yield self.planes[1], between, SHIFT + 1
-            yield self.planes[2], between, SHIFT + 1
 
     def polygon(self, points: Points, color: RGB) -> None:
         """Fill a polygon; points: fixed-point, shape (n, 2)."""
@@ -143,7 +137,7 @@ def paint(color: RGB, yuv: bool) -> tuple[Any, ...]:
 
 
 @lru_cache(maxsize=1024)
-def _yuv(color: RGB) -> tuple[int, int, int]:
+def _yuv(color: RGB) -> tuple[tuple[int], tuple[int, int]]:
     bgr1 = np.array([*color[::-1], 1.0])
     y, u, v = (round(float(row @ bgr1)) for row in (*_Y, *_UV))
-    return y, u, v
+    return (y,), (u, v)

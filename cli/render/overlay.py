@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from cli.render.canvas import BLOOM, ONE, Canvas, fixed
+from cli.render.canvas import BLOOM, ONE, Box, Canvas, fixed
 from cli.render.outline import segment
 from cli.render.style import CLEAN, PALETTE, RGB, mix, rgb
 from cli.render.text import lettering
@@ -101,6 +101,7 @@ class _Page:
         self.canvas, self.scale = canvas, scale
         self.size = (canvas.planes[0].shape[1], canvas.planes[0].shape[0])
         self.unit = max(0.7, max(self.size) / 1280)
+        self._taken: list[Box] = []
 
     def lay(self, picture: NDArray[np.uint8]) -> None:
         """The picture itself, paled, under everything."""
@@ -143,10 +144,22 @@ class _Page:
         self.lines(np.array([sides[0], head, sides[1]]), color, width=3.4)
 
     def label(self, at: Array, text: str, color: RGB) -> None:
-        """A name on a pale plate, centred above a point and inside the page."""
-        mask = lettering(text, max(9, round(11 * self.unit)))
+        """A name on a pale plate, centred above a point, inside the page and clear of other names."""
+        mask = lettering(text, max(8, round(10 * self.unit)))
         height, width = mask.shape
         x = int(np.clip(at[0] * self.scale - width / 2, 0, max(0, self.size[0] - width)))
-        y = int(np.clip(at[1] * self.scale - height - 2, 0, max(0, self.size[1] - height)))
+        above = at[1] * self.scale - height - 2
+        tries = [above + height * k for k in (0, -1, 1, -2, 2, -3, 3)]
+        y = next((y for y in tries if self._is_free((x, int(y), x + width, int(y) + height))), above)
+        y = int(np.clip(y, 0, max(0, self.size[1] - height)))
+        self._taken.append((x, y, x + width, y + height))
         self.canvas.blend(np.full((height, width), 190, np.uint8), (x, y), CLEAN.paper)
-        self.canvas.blend(mask, (x, y), mix(color, (0, 0, 0), 0.25))
+        self.canvas.blend(mask, (x, y), mix(color, (0, 0, 0), 0.35))
+
+    def _is_free(self, box: Box) -> bool:
+        left, top, right, bottom = box
+        return (
+            top >= 0
+            and bottom <= self.size[1]
+            and not any(left < r and x < right and top < b and t < bottom for x, t, r, b in self._taken)
+        )

@@ -24,7 +24,8 @@ __all__ = ["Sheet", "changes", "clock", "drawn", "frame_count", "write_video"]
 # Measured at 1280x720 in flat colours, ms a frame and kB for 10 s: ultrafast crf 20 1.4 and 1200, qp 20 1.0
 # and 850, superfast crf 20 2.4 and 540, veryfast crf 20 3.2 and 290.  A fixed quantizer needs no look ahead.
 X264 = {"preset": "ultrafast", "qp": "21"}
-THREADS = 2
+THREADS = 1
+PIXELS = "nv12"  # yuv420p as x264 keeps it inside; two planes to draw on instead of three
 
 CHUNK = 64  # frames whose poses are computed at once: memory does not grow with the length
 AHEAD = 4  # frames drawn but not yet encoded
@@ -49,13 +50,13 @@ def write_video(
     width, height = figure.camera.size
     with av.open(path, "w", format="mp4", options={"movflags": "faststart"}) as container:
         stream: Any = container.add_stream("libx264", rate=rate, options=X264)
-        stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
+        stream.width, stream.height, stream.pix_fmt = width, height, PIXELS
         stream.codec_context.time_base = 1 / rate
         stream.codec_context.thread_count = THREADS
         _tag_colors(stream.codec_context)
         free: queue.SimpleQueue[Sheet] = queue.SimpleQueue()
         for _ in range(AHEAD):
-            free.put(Sheet(av.VideoFrame(width, height, "yuv420p")))
+            free.put(Sheet(av.VideoFrame(width, height, PIXELS)))
 
         def encode(item: tuple[int, Sheet]) -> None:
             number, sheet = item
@@ -133,11 +134,9 @@ def clock(changed: NDArray[np.bool_], fps: float) -> list[str]:
 
 def _canvas_on(frame: Any) -> Canvas:
     """A canvas whose pixels are the frame's own."""
-    planes = []
-    for plane in frame.planes:
-        rows = np.frombuffer(plane, np.uint8).reshape(plane.height, plane.line_size)
-        planes.append(rows[:, : plane.width])
-    return Canvas(tuple(planes))
+    width = frame.width
+    y, uv = (np.frombuffer(plane, np.uint8).reshape(-1, plane.line_size) for plane in frame.planes)
+    return Canvas((y[: frame.height, :width], uv.reshape(len(uv), -1, 2)[: frame.height // 2, : width // 2]))
 
 
 def _tag_colors(codec: Any) -> None:

@@ -1,0 +1,140 @@
+"""From ink to a scene, a picture of what was seen, an explanation, a video."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from cli.main import main
+from cli.render.overlay import overlay
+from cli.render.style import CLEAN
+from sim.scene import Scene
+from sketch.ink import Sketch, Stroke
+from sketch.recognize import Reading, Recognition
+
+
+def circle(x: float, y: float, r: float) -> list[list[float]]:
+    return [[x + r * math.cos(k / 10), y + r * math.sin(k / 10)] for k in range(63)]
+
+
+def line(*corners: tuple[float, float]) -> list[list[float]]:
+    """A stroke through the corners with a point every few pixels, as a pen gives."""
+    points: list[list[float]] = []
+    for (ax, ay), (bx, by) in pairwise(corners):
+        n = max(2, round(math.hypot(bx - ax, by - ay) / 6))
+        points += [[ax + (bx - ax) * k / n, ay + (by - ay) * k / n] for k in range(n)]
+    return [*points, list(corners[-1])]
+
+
+# A ball over a floor with an X in it, and an arrow.
+STROKES = [
+    line((100, 400), (540, 400), (540, 450), (100, 450), (100, 400)),
+    line((300, 410), (340, 442)),
+    line((340, 410), (300, 442)),
+    circle(320, 200, 50),
+    line((560, 60), (560, 180), (545, 155), (560, 180), (575, 155)),
+]
+
+
+@pytest.fixture
+def sketch_file(tmp_path: Path) -> Path:
+    path = tmp_path / "ball.json"
+    strokes = [{"points": stroke} for stroke in STROKES]
+    path.write_text(json.dumps({"width": 640, "height": 480, "pixels_per_metre": 100, "strokes": strokes}))
+    return path
+
+
+def test_a_drawing_becomes_a_scene(sketch_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = sketch_file.parent / "scene.json"
+    assert main(["recognize", str(sketch_file), "-o", str(out)]) == 0
+    assert capsys.readouterr().out == ""
+    scene = Scene.load(out)
+    assert sorted(type(body.shape).__name__ for body in scene.bodies) == ["Circle", "Rectangle"]
+    assert [type(body.shape).__name__ for body in scene.bodies if body.anchored] == ["Rectangle"]
+    assert scene.gravity == pytest.approx((0, -9.81), abs=0.2)
+
+
+def test_the_scene_goes_to_standard_output(
+    sketch_file: Path, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    assert main(["recognize", str(sketch_file)]) == 0
+    assert len(Scene.from_json(capfdbinary.readouterr().out).bodies) == 2
+
+
+def test_scale_is_that_of_the_drawing(sketch_file: Path) -> None:
+    out = sketch_file.parent / "scene.json"
+    assert main(["recognize", str(sketch_file), "-o", str(out), "--scale", "50"]) == 0
+    ball = next(b for b in Scene.load(out).bodies if not b.anchored)
+    assert ball.shape.radius == pytest.approx(1.0, rel=0.05)  # type: ignore[union-attr]
+
+
+def test_explanation_names_every_reading(sketch_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["recognize", str(sketch_file), "--explain"]) == 0
+    text = capsys.readouterr().out
+    for word in ("circle", "rectangle", "anchor", "gravity", "anchored", "strokes 1, 2"):
+        assert word in text
+
+
+def test_drawing_to_video_falls_and_rests(sketch_file: Path) -> None:
+    out = sketch_file.parent / "run"
+    argv = ["simulate", str(sketch_file), "-o", f"{out}.mp4", "-o", f"{out}.json", "--duration", "3"]
+    assert main([*argv, "--size", "320x240"]) == 0
+    run = json.loads(Path(f"{out}.json").read_bytes())
+    ball = next(k for k in range(2) if run["positions"][0][k] != run["positions"][-1][k])
+    # The floor's top is at y = -4 m, the ball's radius 0.5 m.
+    assert run["positions"][-1][ball][1] == pytest.approx(-3.5, abs=0.05)
+    assert Path(f"{out}.mp4").stat().st_size > 1000
+
+
+def test_gravity_of_the_command_line_comes_before_the_drawn(
+    sketch_file: Path, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    argv = ["simulate", str(sketch_file), "-o", "-", "--duration", "0.1", "--gravity"]
+    assert main([*argv, "none"]) == 0
+    run = json.loads(capfdbinary.readouterr().out)
+    assert run["velocities"][0] == run["velocities"][-1]
+    assert main([*argv, "-2,0"]) == 0
+    run = json.loads(capfdbinary.readouterr().out)
+    moving = max(run["velocities"][-1], key=lambda v: abs(v[0]))
+    assert moving == pytest.approx([-0.2, 0], abs=1e-9)
+
+
+def test_bad_strokes_name_the_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bad = tmp_path / "bad.json"
+    bad.write_text('{"strokes": [{"points": [[1, 2], [3, 4]]}, {"points": [[0, 0], [NaN, 1]]}]}')
+    for command in ("recognize", "simulate"):
+        assert main([command, str(bad)]) == 3
+        captured = capsys.readouterr()
+        assert captured.err.splitlines()[0].startswith("error: strokes[1].points[1]: x is")
+
+
+def test_overlay_file(sketch_file: Path) -> None:
+    out = sketch_file.parent / "seen.png"
+    assert main(["recognize", str(sketch_file), "--overlay", str(out)]) == 0
+    picture = cv2.imread(str(out))
+    assert picture.shape == (480, 640, 3)
+    assert sorted(path.name for path in sketch_file.parent.iterdir()) == ["ball.json", "seen.png"]
+
+
+def test_overlay_shows_unread_ink_in_the_signal_colour() -> None:
+    ink = Sketch([Stroke(np.array(line((20, 100), (180, 100))))], 200, 200)
+    reading = Reading("unread", (0,), 0.4, np.zeros((0, 2)))
+    picture = overlay(Recognition(ink, Scene(), [reading])).planes[0]
+    near = np.abs(picture[97:104, 100].astype(int) - CLEAN.signal[::-1]).max(axis=1)
+    assert near.min() < 30
+
+
+def test_overlay_reduces_large_pictures_and_keeps_their_form() -> None:
+    ink = Sketch([], 4000, 1000, picture=np.full((1000, 4000, 3), 200, np.uint8))
+    assert overlay(Recognition(ink, Scene(), [])).planes[0].shape == (400, 1600, 3)
+
+
+def test_overlay_of_a_page_without_size_shows_all_ink() -> None:
+    ink = Sketch([Stroke(np.array(line((20, 30), (300, 100))))])
+    assert overlay(Recognition(ink, Scene(), [])).planes[0].shape == (120, 320, 3)
