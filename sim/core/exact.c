@@ -4,8 +4,8 @@
 
 #define BUCKET_LIMIT 400.0 /* events of one body that may come in a burst */
 #define BUCKET_LEAK 200.0  /* and a second in the long run */
-#define PAIRS_A_SECOND 64.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
-#define PAIRS_OF_FEW 4e6    /* a few bodies are worth this many pairs among them: exactness is what is asked for */
+#define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
+#define PAIRS_OF_FEW 1e6    /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
 int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, double end) {
     size_t n = (size_t)world->body_count;

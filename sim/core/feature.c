@@ -1,21 +1,9 @@
 #include "feature.h"
 
-static const Vec *outline(const World *world, const Shape *shape) { return &world->vertex[shape->first]; }
-
 /* Numbers of features: circles touch sides then corners, polygons a's corners on b's sides, then b's on a's. */
 int32_t feature_count(const World *world, int32_t shape_a, int32_t shape_b) {
     int32_t a = world->shape[shape_a].count, b = world->shape[shape_b].count;
     return a > 1 && b > 1 ? 2 * a * b : a > 1 || b > 1 ? 2 * a * b : 1;
-}
-
-static bool is_reflex(const Vec *v, int32_t count, int32_t i) {
-    Vec before = v[(i + count - 1) % count], after = v[(i + 1) % count];
-    return vcross(vsub(v[i], before), vsub(after, v[i])) <= 0;
-}
-
-static Vec direction(Vec from, Vec to) {
-    Vec d = vsub(to, from);
-    return vscale(d, 1 / vlength(d));
 }
 
 bool feature_make(const World *world, int32_t shape_a, int32_t shape_b, int32_t number, Feature *out) {
@@ -33,23 +21,20 @@ bool feature_make(const World *world, int32_t shape_a, int32_t shape_b, int32_t 
     }
     bool is_side = b->count > 1 && number < a->count * b->count;
     int32_t i = a->count > 1 ? number / b->count : 0, j = number % b->count;
-    const Vec *va = outline(world, a), *vb = outline(world, b);
+    const Vec *va = &world->vertex[a->first], *vb = &world->vertex[b->first];
+    const Side *side = &world->side[b->first];
     *out = (Feature){.shape_a = shape_a, .shape_b = shape_b, .body_a = a->body, .body_b = b->body,
                      .index_a = i, .index_b = j, .is_side = is_side,
                      .point_a = va[i], .point_b = vb[j], .radius_a = a->radius, .radius_b = b->radius};
-    if (a->count > 1 && is_reflex(va, a->count, i)) return false;
+    if (a->count > 1 && world->side[a->first + i].reflex) return false;
     if (b->count == 1) return true;
-    Vec next = vb[(j + 1) % b->count];
-    if (is_side) {
-        out->along = direction(vb[j], next);
-        out->length = vlength(vsub(next, vb[j]));
-        return true;
-    }
-    if (is_reflex(vb, b->count, j)) return false;
+    out->along = side[j].along;
+    out->length = side[j].length;
+    if (is_side) return true;
     out->is_corner = true;
-    out->along = direction(vb[(j + b->count - 1) % b->count], vb[j]);
-    out->after = direction(vb[j], next);
-    return true;
+    out->along = side[(j + b->count - 1) % b->count].along;
+    out->after = side[j].along;
+    return !side[j].reflex;
 }
 
 /* The velocity of a body's material point at arm r from its centre. */

@@ -20,9 +20,15 @@ static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, doubl
     double relative = a.is_steady && b.is_steady ? vlength(vsub(a.steady, b.steady)) : a.acceleration + b.acceleration;
     double swing_a = a.spin * a.spin + a.spin_acceleration, swing_b = b.spin * b.spin + b.spin_acceleration;
     double points = relative + ra * swing_a + rb * swing_b;
+    double centres = a.speed + b.speed;
+    if (a.is_steady && b.is_steady) { /* their velocity against each other is greatest at one of the ends */
+        Vec first = vsub(motion_state(ma, from).v, motion_state(mb, from).v);
+        Vec last = vmad(first, to - from, vsub(a.steady, b.steady));
+        centres = sqrt(fmax(vdot(first, first), vdot(last, last)));
+    }
     PairBound bound;
-    bound.closing = a.speed + b.speed + ra * a.spin + rb * b.spin;
-    double apart = distance + ra + rb + (a.speed + b.speed) * (to - from); /* |rho| at most */
+    bound.closing = centres + ra * a.spin + rb * b.spin;
+    double apart = distance + ra + rb + centres * (to - from); /* |rho| at most */
     bound.steer_ab = points + 2 * b.spin * bound.closing + swing_b * apart;
     bound.steer_ba = points + 2 * a.spin * bound.closing + swing_a * apart;
     return bound;

@@ -117,6 +117,14 @@ static void bound_shape(Shape *shape, const Vec *v) {
     shape->reach += shape->radius;
 }
 
+static void measure_sides(Side *side, const Vec *v, int32_t count) {
+    for (int32_t i = 0; i < count && count > 1; i++) {
+        Vec to = vsub(v[(i + 1) % count], v[i]), from = vsub(v[i], v[(i + count - 1) % count]);
+        double length = vlength(to);
+        side[i] = (Side){vscale(to, 1 / length), length, vcross(from, to) <= 0};
+    }
+}
+
 static void add_shape(World *world, const SimInput *input, int32_t source, int32_t carrier) {
     const SimBody *b = &input->bodies[source];
     Body *body = &world->body[carrier];
@@ -135,6 +143,7 @@ static void add_shape(World *world, const SimInput *input, int32_t source, int32
         shape->count = copy_outline(out, &input->vertices[2 * start], input->vertex_start[source + 1] - start, local);
     }
     bound_shape(shape, out);
+    measure_sides(&world->side[shape->first], out, shape->count);
     world->vertex_count += shape->count;
     world->source_shape[source] = world->shape_count++;
     body->shape_count++;
@@ -226,13 +235,14 @@ int world_create(World *world, const SimInput *input) {
     world->body = malloc((n + 1) * sizeof *world->body);
     world->shape = malloc((n + 1) * sizeof *world->shape);
     world->vertex = malloc((vertices + 1) * sizeof *world->vertex);
+    world->side = malloc((vertices + 1) * sizeof *world->side);
     world->joint = malloc((joints + 1) * sizeof *world->joint);
     world->source_shape = malloc((n + 1) * sizeof *world->source_shape);
     int32_t *parent = malloc((n + 1) * sizeof *parent), *member = malloc((n + 1) * sizeof *member);
     int32_t *group_size = malloc((n + 1) * sizeof *group_size);
     Tie *ties = malloc((joints + 1) * sizeof *ties);
     int status = SIM_OUT_OF_MEMORY;
-    if (!world->body || !world->shape || !world->vertex || !world->joint || !world->source_shape) goto out;
+    if (!world->body || !world->shape || !world->vertex || !world->side || !world->joint || !world->source_shape) goto out;
     if (!parent || !member || !group_size || !ties) goto out;
     double size = 1e-9;
     for (int32_t i = 0; i < input->body_count; i++) {
@@ -258,6 +268,7 @@ void world_destroy(World *world) {
     free(world->body);
     free(world->shape);
     free(world->vertex);
+    free(world->side);
     free(world->piece);
     free(world->piece_vertex);
     free(world->piece_corner);

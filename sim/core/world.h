@@ -32,6 +32,13 @@ typedef struct Body {
     Mode mode;
 } Body;
 
+/* The side of an outline that starts at a vertex. */
+typedef struct Side {
+    Vec along;     /* unit */
+    double length; /* [m] */
+    bool reflex;   /* the outline turns inwards at the vertex: nothing convex can touch there */
+} Side;
+
 typedef struct Shape {
     int32_t body;    /* that carries it */
     int32_t source;  /* index among the input's bodies */
@@ -63,6 +70,7 @@ typedef struct World {
     Body *body;
     Shape *shape;            /* grouped by body */
     Vec *vertex;
+    Side *side;              /* of every vertex */
     Piece *piece;            /* made by world_decompose */
     Vec *piece_vertex;
     int32_t *piece_corner;   /* by piece vertex: which one of World.vertex it is */
