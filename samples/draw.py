@@ -152,11 +152,11 @@ def dominoes(page: Page) -> None:
 @machine
 def funnel(page: Page) -> None:
     """Many bodies fall through a funnel into a bin."""
-    page.beam((200, 290), (530, 480), 36, anchored=True)
-    page.beam((1080, 290), (750, 480), 36, anchored=True)
-    page.rectangle((640, 690), (560, 36), anchored=True)
-    page.rectangle((378, 598), (32, 146), anchored=True)
-    page.rectangle((902, 598), (32, 146), anchored=True)
+    page.beam((200, 280), (525, 450), 36, anchored=True)
+    page.beam((1080, 280), (755, 450), 36, anchored=True)
+    page.rectangle((640, 692), (800, 36), anchored=True)
+    page.rectangle((258, 606), (32, 134), anchored=True)
+    page.rectangle((1022, 606), (32, 134), anchored=True)
     sides = [0, 4, 3, 5, 6, 0, 4, 0, 6, 3, 4, 5, 0, 3, 4, 0, 5, 4]
     wobble = page.hand.random
     for k, n in enumerate(sides):

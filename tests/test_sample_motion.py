@@ -142,7 +142,7 @@ def test_funnel_all_bodies_end_in_the_bin() -> None:
     moving = [k for k, body in enumerate(scene.bodies) if not body.anchored]
     assert len(moving) == 18
     end = run.positions[-1, moving] / (PIXEL, -PIXEL)
-    assert np.all((end[:, 0] > 360) & (end[:, 0] < 920) & (end[:, 1] < 690) & (end[:, 1] > 480))
+    assert np.all((end[:, 0] > 270) & (end[:, 0] < 1010) & (end[:, 1] < 680) & (end[:, 1] > 500))
     assert np.max(np.abs(run.velocities[-1])) < 0.05
 
 
