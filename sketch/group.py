@@ -92,12 +92,12 @@ def arrow_groups(pieces: list[Piece]) -> Iterator[tuple[tuple[int, ...], np.ndar
 def _heads(pieces: list[Piece], shaft: int, tip, length: float) -> list[int]:
     out = []
     for j, q in enumerate(pieces):
-        if j == shaft or q.extent > 1.3 * length:
+        if j == shaft or q.extent > 2 * length:
             continue
         x0, y0, x1, y1 = q.box
-        reach = 0.35 * length
+        reach = 0.5 * length
         if x0 - reach <= tip[0] <= x1 + reach and y0 - reach <= tip[1] <= y1 + reach:
             d = np.hypot(*(q.points - np.asarray(tip)).T)
-            if d.min() < reach and d.max() < 0.9 * length:
+            if d.min() < reach and d.max() < 1.2 * length:
                 out.append(j)
     return out

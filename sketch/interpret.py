@@ -17,6 +17,7 @@ __all__ = ["interpret"]
 Array = NDArray[np.float64]
 
 GRAVITY = 9.81
+SMALL = 0.3  # radius of a pivot over the size of what it joins
 PAGE = 10.0  # metres: the longer side of a page without a scale
 # Okabe and Ito's and Tol's muted colours: told apart by colour-blind readers, and by their lightness in print.
 PALETTE = [
@@ -196,21 +197,20 @@ def _small_circles(
         radius = float(np.hypot(*(reading.outline - centre).T).mean())
         under = []
         for other in bodies:
-            if other is reading or other in pivots or areas[id(other)] < 2 * areas[id(reading)]:
+            if other is reading or other in pivots:
                 continue
-            if other.kind == "bar":
-                d = distance(centre, np.concatenate([other.outline, other.outline[::-1]]))
-                if d < radius:
-                    under.append(other)
-            elif inside(centre, other.outline):
-                under.append(other)
-        if len(under) > 2:
-            under = sorted(under, key=lambda r: areas[id(r)])[:2]
-        if len(under) == 2:
-            pivots[reading] = (centre, sorted(under, key=bodies.index))
-        elif len(under) == 1:
-            if areas[id(reading)] < 0.05 * areas[id(under[0])]:
-                pivots[reading] = (centre, under)
+            line = np.concatenate([other.outline, other.outline[::-1]]) if other.kind == "bar" else other.outline
+            depth = distance(centre, line) * (-1 if other.kind != "bar" and inside(centre, line) else 1)
+            small = SMALL * (math.sqrt(areas[id(other)]) if other.kind != "bar" else float(np.ptp(line, axis=0).max()))
+            if depth < radius and radius < small:
+                under.append((depth, other))
+        under.sort(key=lambda t: t[0])
+        if len(under) >= 2:
+            pair = [r for _, r in under[:2]]
+            pivots[reading] = (centre, sorted(pair, key=bodies.index))
+        elif len(under) == 1 and under[0][0] < 0:
+            if radius < SMALL / 2 * math.sqrt(areas[id(under[0][1])]):
+                pivots[reading] = (centre, [under[0][1]])
             else:
                 balls.append(reading)
     return pivots, balls

@@ -17,17 +17,15 @@ Array = NDArray[np.float64]
 SAMPLES, SIDES = 64, 14  # as in core/fit.h
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
-_doubles, _ints = ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int32)
-_lib.ink_closed.argtypes = [
-    ctypes.c_void_p,
-    ctypes.c_void_p,
-    ctypes.c_int,
-    ctypes.c_double,
-    ctypes.c_double,
-] + [ctypes.c_void_p] * 6
-_lib.ink_closed.restype = None
-_lib.ink_open.argtypes = [ctypes.c_void_p, ctypes.c_int32] + [ctypes.c_void_p] * 3
-_lib.ink_open.restype = ctypes.c_double
+_pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
+_closed = ctypes.CFUNCTYPE(
+    None, _pointer, _pointer, _int, _double, _double, _double, *[_pointer] * 7
+)(("ink_closed", _lib))
+_open = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _pointer, _pointer)(("ink_open", _lib))
+
+
+_COUNTS = (10, 2, 6, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1))  # of ink_closed's results, in order
+_OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
 
 
 class ClosedFit(NamedTuple):
@@ -39,6 +37,7 @@ class ClosedFit(NamedTuple):
         conic: a, b, c, d, e of x² + y² = a(x² - y²) + 2bxy + cx + dy + e.
         round_residual: mean squared distance from it.
         residual: of the best k-gon, for k = 0 .. SIDES.
+        oddness: nats that its bowed sides, flat corners and short sides cost.
         corners: in the frame, (SIDES + 1, SIDES, 2).
     """
 
@@ -49,6 +48,7 @@ class ClosedFit(NamedTuple):
     conic: Array
     round_residual: float
     residual: list[float]
+    oddness: list[float]
     corners: Array
 
     def vertices(self, sides: int) -> Array:
@@ -68,25 +68,24 @@ class OpenFit(NamedTuple):
         return self.corners[segments, : segments + 1]
 
 
-def fit_closed(parts: list[Array], least_axis: float, cap: float) -> ClosedFit:
+def fit_closed(parts: list[Array], least_axis: float, cap: float, tremor: float) -> ClosedFit:
     """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
     ends = np.cumsum([len(p) for p in parts], dtype=np.int32)
-    out = np.empty(10 + 2 + 6 + SIDES + 1 + 2 * SIDES * (SIDES + 1) + 2 * len(xy))
+    out = np.empty(_OFFSETS[-1] + 2 * len(xy))
     at = out.ctypes.data
-    offsets = (0, 10, 12, 18, 19 + SIDES, 19 + SIDES + 2 * SIDES * (SIDES + 1))
-    _lib.ink_closed(
-        xy.ctypes.data, ends.ctypes.data, len(ends), least_axis, cap, *(at + 8 * offset for offset in offsets)
-    )
+    _closed(xy.ctypes.data, ends.ctypes.data, len(ends), least_axis, cap, tremor, *(at + 8 * o for o in _OFFSETS))
+    frame, length, conic, residual, oddness, corners, rest = _OFFSETS
     return ClosedFit(
         mean=out[0:2],
         back=out[6:10].reshape(2, 2),
-        ink=float(out[10]),
-        gap=float(out[11]),
-        conic=out[12:17],
-        round_residual=float(out[17]),
-        residual=out[18 : 19 + SIDES].tolist(),
-        corners=out[offsets[4] : offsets[5]].reshape(SIDES + 1, SIDES, 2),
+        ink=float(out[length]),
+        gap=float(out[length + 1]),
+        conic=out[conic : conic + 5],
+        round_residual=float(out[conic + 5]),
+        residual=out[residual:oddness].tolist(),
+        oddness=out[oddness:corners].tolist(),
+        corners=out[corners:rest].reshape(SIDES + 1, SIDES, 2),
     )
 
 
@@ -95,7 +94,7 @@ def fit_open(points: Array) -> OpenFit:
     xy = np.ascontiguousarray(points, dtype=np.float64)
     samples, residual = np.empty((SAMPLES, 2)), np.empty(SIDES + 1)
     corners = np.zeros((SIDES + 1, SIDES + 1, 2))
-    length = _lib.ink_open(
+    length = _open(
         xy.ctypes.data, len(xy), samples.ctypes.data, residual.ctypes.data, corners.ctypes.data
     )
     return OpenFit(length, samples, residual.tolist(), corners)

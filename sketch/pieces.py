@@ -62,6 +62,14 @@ class Piece:
         """Root mean square distance from its chord's best line, as a share of its length."""
         return float(np.sqrt(self.fit.residual[1])) / max(self.length, 1e-9)
 
+    @cached_property
+    def scale(self) -> float:
+        """Half of its extent; of a piece that closes, half of its thickness [pixels]."""
+        if self.gap > 0.15 * self.length:
+            return self.extent / 2
+        around = self.fit.samples - self.fit.samples.mean(axis=0)
+        return math.sqrt(2 * max(float(np.linalg.eigvalsh(around.T @ around)[0]) / len(around), 0.0))
+
 
 def cut_into_pieces(sketch: Sketch) -> list[Piece]:
     pieces = []

@@ -19,11 +19,12 @@ __all__ = ["Fitted", "arrow", "bar", "closed", "cross", "unread"]
 
 Array = NDArray[np.float64]
 
-OBSERVATIONS = 40  # independent observations in an outline's ink: neighbouring points err together
+OBSERVATIONS = 30  # independent observations in an outline's ink: neighbouring points err together
 TREMOR = 0.04  # spread of ink about what was meant, as a share of the radius
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius
-PARAMETER = 5.0  # nats to say one parameter to that precision: ln(page / tremor)
-FREE = 3.0  # nats an observation to say ink freely, point by point
+PARAMETER = 4.0  # nats to say one parameter to that precision: ln(page / tremor)
+ROUND = 35.0  # nats that a round outline is less usual than one of no corners and no sides would be
+FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
 GAP = 3.0  # nats for each observation that an outline lacks
 CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
@@ -61,18 +62,34 @@ def _misfit(mean_square: float, ink: float) -> float:
     return 0.5 * n * (math.log1p(mean_square / TREMOR**2) + mean_square / SLOPPY**2)
 
 
+def _misfit_of(piece: Piece, mean_square: float) -> float:
+    """Nats to say where a piece's ink is, given lines that it is off by `mean_square` [pixels²].
+
+    The writer's precision goes with the size of what is drawn, not with the group's: a small loop is no careless
+    line of something large.
+    """
+    off = mean_square / max(piece.scale, 1e-9) ** 2
+    n = OBSERVATIONS * piece.length / (math.pi * max(piece.extent, 1e-9))
+    return 0.5 * n * (math.log1p(off / TREMOR**2) + off / SLOPPY**2)
+
+
+def _free(ink: float) -> float:
+    """Nats to say ink that no primitive expects; ink: its length in radii."""
+    return FREE * OBSERVATIONS * ink / (2 * math.pi)
+
+
 # ---------------------------------------------------------------- closed outlines
 
 
 def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float) -> list[Fitted]:
     """Readings of pieces that, one after another (index, reversed), go once around: round or with corners."""
     parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in order]
-    fit = fit_closed(parts, least_axis, CAP)
+    fit = fit_closed(parts, least_axis, CAP, TREMOR / 2)
     names = tuple(sorted({i for i, _ in order}))
     gaps = GAP * OBSERVATIONS * fit.gap / (2 * math.pi)
     out = [_round(fit, names, gaps)]
     for k in range(3, 13):
-        cost = _misfit(fit.residual[k], fit.ink) + gaps
+        cost = _misfit(fit.residual[k], fit.ink) + fit.oddness[k] + gaps
         vertices = fit.vertices(k)
         out.append(
             Fitted("polygon", names, cost + 2 * k * PARAMETER, vertices, k, math.sqrt(fit.residual[k]))
@@ -80,7 +97,7 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
         if k == 4:
             box, extra = _rectangle(fit, vertices)
             residual = fit.residual[4] + extra
-            cost = _misfit(residual, fit.ink) + gaps + 5 * PARAMETER
+            cost = _misfit(residual, fit.ink) + fit.oddness[4] + gaps + 5 * PARAMETER
             out.append(Fitted("rectangle", names, cost, box, 4, math.sqrt(residual)))
     return out
 
@@ -97,8 +114,8 @@ def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float) -> Fitted:
     middle = fit.mean + fit.back @ centre
     aspect = math.log(radii[0] / radii[1]) if radii[1] > 0 else 9.0
     cost = _misfit(fit.round_residual, fit.ink) + gaps
-    as_circle = 7 * PARAMETER + 0.5 * (aspect / 0.055) ** 2  # nobody's circles are round
-    as_ellipse = 9 * PARAMETER + 3
+    as_circle = ROUND + 0.5 * (aspect / 0.065) ** 2  # nobody's circles are round
+    as_ellipse = ROUND + 2 * PARAMETER + 3
     angles = np.linspace(0, 2 * math.pi, 24, endpoint=False)
     if as_circle <= as_ellipse:
         r = math.sqrt(radii[0] * radii[1])
@@ -212,38 +229,35 @@ def arrow(pieces: list[Piece], names: tuple[int, ...], tail: Array, toward: Arra
     if long <= 0:
         return None
     u = axis / long
+    v = np.array([-u[1], u[0]])
     q = np.concatenate([pieces[i].fit.samples for i in names]) - tail
-    weight = np.concatenate([np.full(len(pieces[i].fit.samples), pieces[i].length) for i in names])
-    weight /= weight.sum()
-    s, h = q @ u, q @ np.array([-u[1], u[0]])
+    s, h = q @ u, q @ v
     reach = float(s.max())
-    off = np.abs(h) > 0.06 * reach
-    if not off.any() or s[off].min() < 0.2 * reach:
+    if reach <= 0:
         return None
     left, right = int(np.argmax(h)), int(np.argmin(h))
-    if h[left] < 0.07 * reach or h[right] > -0.07 * reach:
-        return None
-    tip = np.array([reach, float(np.median(h[s > 0.97 * reach]))])
+    tip = np.array([reach, float(np.median(h[s > 0.96 * reach]))])
     z = np.stack([s, h], axis=1)
+    barbs = [tip - z[left], tip - z[right]]
+    lengths = [float(np.hypot(*b)) for b in barbs]
+    angles = [math.atan2(-b[1] * side, b[0]) for b, side in zip(barbs, (1, -1), strict=True)]
+    if min(angles) < 0.15 or max(angles) > 1.4 or min(lengths) < 0.1 * reach:
+        return None
     distance = np.minimum.reduce(
         [_from_segment(z, np.zeros(2), tip), _from_segment(z, tip, z[left]), _from_segment(z, tip, z[right])]
     )
     radius = reach / 2
-    mean_square = float((weight * np.minimum(distance / radius, CAP) ** 2).sum())
-    barbs = [tip - z[left], tip - z[right]]
-    lengths = [float(np.hypot(*b)) for b in barbs]
-    if min(b[0] for b in barbs) < 0.03 * reach:
-        return None
-    ink = sum(pieces[i].length for i in names) / radius
-    balance = (
-        0.5 * (math.log(lengths[0] / lengths[1]) / 0.35) ** 2
-        + 0.5 * (math.log(sum(lengths) / 2 / reach / 0.4) / 0.4) ** 2
-    )
-    cost = 6 * PARAMETER + _misfit(mean_square, ink) + balance
-    v = np.array([-u[1], u[0]])
-    return Fitted(
-        "arrow", names, cost, np.array([tail, tail + u * tip[0] + v * tip[1]]), 0, math.sqrt(mean_square)
-    )
+    each = (distance**2).reshape(len(names), -1).mean(axis=1).tolist()
+    misfit = sum(_misfit_of(pieces[i], square) for i, square in zip(names, each, strict=True))
+    mean_square = sum(each) / len(each) / radius**2
+    excess = sum(pieces[i].length for i in names) / radius - (reach + sum(lengths)) / radius  # drawn twice
+    # a head: two barbs alike, at some 35 degrees, less than half as long as the shaft
+    likeness = (math.log(lengths[0] / lengths[1]) / 0.35) ** 2
+    size = (math.log(sum(lengths) / 2 / reach / 0.45) / 0.4) ** 2
+    spread = sum(((a - 0.6) / 0.25) ** 2 for a in angles)
+    cost = 6 * PARAMETER + misfit + _free(max(excess, 0.0)) + 0.5 * (likeness + size + spread)
+    head = tail + u * tip[0] + v * tip[1]
+    return Fitted("arrow", names, cost, np.array([tail, head]), 0, math.sqrt(mean_square))
 
 
 def _from_segment(z: Array, a: Array, b: Array) -> Array:

@@ -91,16 +91,17 @@ def _candidates(pieces: list[Piece]) -> list[Fitted]:
 
 def _context(candidates: list[Fitted], gains: list[float]) -> None:
     """What stands around a reading, told last: it decides between readings that are nearly equal."""
-    bodies = [
-        (c, gains[k])
-        for k, c in enumerate(candidates)
-        if gains[k] > 0 and c.kind in ("circle", "ellipse", "rectangle", "polygon")
-    ]
+    solid = ("circle", "ellipse", "rectangle", "polygon")
+    bodies = [c for k, c in enumerate(candidates) if gains[k] > 0 and c.kind in solid]
     for k, c in enumerate(candidates):
+        if c.kind not in ("cross", "arrow") or gains[k] < -ANCHORS:
+            continue
+        centre = c.outline.mean(axis=0)
+        over = any(set(b.pieces).isdisjoint(c.pieces) and inside(centre, b.outline) for b in bodies)
         if c.kind == "cross":
-            centre = c.outline.mean(axis=0)
-            over = any(not set(b.pieces) & set(c.pieces) and inside(centre, b.outline) for b, _ in bodies)
             gains[k] += ANCHORS if over else -ANCHORS
+        elif over:
+            gains[k] -= ANCHORS
 
 
 def _reading(k: int, candidates: list[Fitted], gains: list[float], pieces: list[Piece]) -> Reading:

@@ -21,14 +21,22 @@ typedef struct {
     double x[2 * SAMPLES], y[2 * SAMPLES]; /* the samples twice over, so that a run may pass the end */
     double sx[2 * SAMPLES + 1], sy[2 * SAMPLES + 1];
     double sxx[2 * SAMPLES + 1], sxy[2 * SAMPLES + 1], syy[2 * SAMPLES + 1];
-    double cost[SAMPLES][SAMPLES + 1]; /* cost[i][m]: squared distances of samples i .. i+m-1 from their best line */
+    double six[2 * SAMPLES + 1], siy[2 * SAMPLES + 1];   /* x and y times the index, */
+    double siix[2 * SAMPLES + 1], siiy[2 * SAMPLES + 1]; /* and times its square: for the bow */
+    double stiffness; /* (tremor / usual bow)²: what a bow costs, see runs_side */
+    double cost[SAMPLES][SAMPLES + 1]; /* cost[i][m]: of samples i .. i+m-1 as one side, see Line */
 } Runs;
 
 typedef struct {
     double x, y, dx, dy; /* a point of the line, and its unit direction in the order of the samples */
+    double length;       /* of the run along the line */
+    double bow;          /* how far the run's middle stands off its ends, to the left of the direction */
+    double cost;         /* squared distances from the bowed line, and the price of the bow */
 } Line;
 
 void runs_prepare(Runs *r);
+
+/* The line of samples first .. first+count-1. Nobody draws a straight side straight: it may bow, at a price. */
 Line runs_line(const Runs *r, int first, int count);
 
 /* Best splits of samples start .. start+n-1 into 1 .. SIDES runs: cut[k] holds the k+1 bounds of the best k. */

@@ -48,68 +48,99 @@ static Frame normal_frame(const double *xy, int n, double least_axis)
     return f;
 }
 
+static const double BOW = 0.025;   /* usual bow of a straight side, as a share of its length */
+static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
+static const double FLATNESS = 0.12;
+static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
+static const double SHORTNESS = 0.012; /* the spreads say how fast such readings become unlikely */
+
 /* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e: near the unit circle the algebraic distance is the geometric
  * one to first order. Returns the mean squared distance (Sampson's, capped), and the conic. */
 static double fit_round(const double *x, const double *y, int n, double cap2, double conic[5])
 {
-    double a[5][6];
-    memset(a, 0, sizeof a);
-    for (int i = 0; i < n; i++) {
-        double row[6] = {x[i] * x[i] - y[i] * y[i], 2 * x[i] * y[i], x[i], y[i], 1, x[i] * x[i] + y[i] * y[i]};
-        for (int p = 0; p < 5; p++)
-            for (int q = 0; q < 6; q++)
-                a[p][q] += row[p] * row[q];
-    }
-    for (int p = 0; p < 5; p++)
-        a[p][p] += 1e-9 * n;
-    for (int p = 0; p < 5; p++) { /* positive definite: no pivoting needed */
-        for (int q = p + 1; q < 5; q++) {
-            double f = a[q][p] / a[p][p];
-            for (int t = p; t < 6; t++)
-                a[q][t] -= f * a[p][t];
+    double weight[SAMPLES], distance2[SAMPLES], sum = 0;
+    for (int i = 0; i < n; i++)
+        weight[i] = 1;
+    for (int pass = 0; pass < 4; pass++) { /* reweighted, so that a pen's hooks and tails do not pull */
+        double a[5][6];
+        memset(a, 0, sizeof a);
+        for (int i = 0; i < n; i++) {
+            double row[6] = {x[i] * x[i] - y[i] * y[i], 2 * x[i] * y[i], x[i], y[i], 1, x[i] * x[i] + y[i] * y[i]};
+            for (int p = 0; p < 5; p++)
+                for (int q = 0; q < 6; q++)
+                    a[p][q] += weight[i] * row[p] * row[q];
         }
-    }
-    for (int p = 4; p >= 0; p--) {
-        double v = a[p][5];
-        for (int q = p + 1; q < 5; q++)
-            v -= a[p][q] * conic[q];
-        conic[p] = v / a[p][p];
-    }
-    double sum = 0;
-    for (int i = 0; i < n; i++) {
-        double u = x[i] * x[i] + y[i] * y[i] - conic[0] * (x[i] * x[i] - y[i] * y[i]) - conic[1] * 2 * x[i] * y[i] -
-                   conic[2] * x[i] - conic[3] * y[i] - conic[4];
-        double gx = 2 * x[i] * (1 - conic[0]) - 2 * conic[1] * y[i] - conic[2];
-        double gy = 2 * y[i] * (1 + conic[0]) - 2 * conic[1] * x[i] - conic[3];
-        sum += fmin(u * u / fmax(gx * gx + gy * gy, 1e-6), cap2);
+        for (int p = 0; p < 5; p++)
+            a[p][p] += 1e-9 * n;
+        for (int p = 0; p < 5; p++) /* positive definite: no pivoting needed */
+            for (int q = p + 1; q < 5; q++) {
+                double f = a[q][p] / a[p][p];
+                for (int t = p; t < 6; t++)
+                    a[q][t] -= f * a[p][t];
+            }
+        for (int p = 4; p >= 0; p--) {
+            double v = a[p][5];
+            for (int q = p + 1; q < 5; q++)
+                v -= a[p][q] * conic[q];
+            conic[p] = v / a[p][p];
+        }
+        sum = 0;
+        for (int i = 0; i < n; i++) {
+            double u = x[i] * x[i] + y[i] * y[i] - conic[0] * (x[i] * x[i] - y[i] * y[i]) - conic[1] * 2 * x[i] * y[i] -
+                       conic[2] * x[i] - conic[3] * y[i] - conic[4];
+            double gx = 2 * x[i] * (1 - conic[0]) - 2 * conic[1] * y[i] - conic[2];
+            double gy = 2 * y[i] * (1 + conic[0]) - 2 * conic[1] * x[i] - conic[3];
+            distance2[i] = fmin(u * u / fmax(gx * gx + gy * gy, 1e-6), cap2);
+            sum += distance2[i];
+            weight[i] = 1 / (1 + distance2[i] / (0.06 * 0.06));
+        }
     }
     return sum / n;
 }
 
 /* Corners of the k-gon whose sides are the runs bounded by `cut` (counted from `start`), and its mean squared distance.
  * Ink that overshoots a corner lies on its side's line: it pays for the length beyond at a quarter. */
-static double fit_polygon(const Runs *r, int start, const int *cut, int k, double cap2, double *vertices)
+static double fit_polygon(const Runs *r, int start, const int *cut, int k, double cap2, double *vertices,
+                          double *oddness)
 {
     Line side[SIDES];
-    for (int q = 0; q < k; q++)
+    for (int q = 0; q < k; q++) {
         side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q]);
+        double to_chord = 2.0 / 3 * side[q].bow; /* a side's corners are the ends of its bow */
+        side[q].x -= to_chord * side[q].dy;
+        side[q].y += to_chord * side[q].dx;
+    }
     for (int q = 0; q < k; q++) { /* vertex q is where side q begins */
         int before = (q + k - 1) % k;
         int b = (start + cut[q]) % r->n, e = (b + r->n - 1) % r->n;
         double end[2] = {r->x[e], r->y[e]}, begin[2] = {r->x[b], r->y[b]};
         corner(&side[before], &side[q], end, begin, vertices + 2 * q);
     }
-    double sum = 0;
+    double sum = 0, odd = 0, around = 0;
     for (int q = 0; q < k; q++) {
         const double *a = vertices + 2 * q, *b = vertices + 2 * ((q + 1) % k);
-        double dx = b[0] - a[0], dy = b[1] - a[1], l = hypot(dx, dy);
+        around += hypot(b[0] - a[0], b[1] - a[1]);
+    }
+    for (int q = 0; q < k; q++) {
+        const double *a = vertices + 2 * q, *b = vertices + 2 * ((q + 1) % k);
+        double dx = b[0] - a[0], dy = b[1] - a[1], l = hypot(dx, dy), bow = side[q].bow;
         for (int i = cut[q]; i < cut[q + 1]; i++) {
             double px = r->x[(start + i) % r->n] - a[0], py = r->y[(start + i) % r->n] - a[1];
-            double t = l > 0 ? (px * dx + py * dy) / l : 0, h = l > 0 ? (px * dy - py * dx) / l : hypot(px, py);
+            double t = l > 0 ? (px * dx + py * dy) / l : 0, h = l > 0 ? (py * dx - px * dy) / l : hypot(px, py);
             double over = t < 0 ? -t : t > l ? t - l : 0;
+            if (over == 0 && l > 0) {
+                double u = 2 * t / l - 1;
+                h += bow * (1 - u * u);
+            }
             sum += fmin(h * h + 0.0625 * over * over, cap2);
         }
+        const double *c = vertices + 2 * ((q + 2) % k);
+        double turn = fabs(atan2(dx * (c[1] - b[1]) - dy * (c[0] - b[0]), dx * (c[0] - b[0]) + dy * (c[1] - b[1])));
+        double bent = bow / (BOW * fmax(l, 1e-9)), flat = fmax(FLAT - turn, 0) / FLATNESS;
+        double brief = fmax(fmin(SHORT, 0.7 / k) - l / fmax(around, 1e-9), 0) / SHORTNESS;
+        odd += 0.5 * (bent * bent + flat * flat + brief * brief);
     }
+    *oddness = odd;
     return sum / r->n;
 }
 
@@ -118,10 +149,13 @@ static double fit_polygon(const Runs *r, int start, const int *cut, int k, doubl
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
  * least_axis: the frame's radii are at least this long [pixels]: below, the pen's own width is what one sees.
  * cap: distances count up to this, in the frame.
+ * tremor: usual distance of ink from what was meant, in the frame.
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; conic: 5 and its mean squared
- * distance; residual[k]: mean squared distance of the best k-gon; vertices[k][SIDES][2] in the frame. */
-INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap, double *frame,
-                        double *length, double *conic, double *residual, double *vertices, double *scratch)
+ * distance; residual[k]: mean squared distance of the best k-gon; oddness[k]: nats that its bows, flat corners and short
+ * sides cost; vertices[k][SIDES][2] in the frame. */
+INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
+                        double tremor, double *frame, double *length, double *conic, double *residual, double *oddness, double *vertices,
+                        double *scratch)
 {
     int n = part_end[parts - 1];
     Frame f = normal_frame(xy, n, least_axis);
@@ -142,6 +176,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     }
     Runs r;
     r.n = SAMPLES;
+    r.stiffness = tremor * tremor / (BOW * BOW);
     length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
     runs_prepare(&r);
     double cap2 = cap * cap;
@@ -149,16 +184,17 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
 
     for (int k = 0; k <= SIDES; k++)
         residual[k] = INFINITY;
-    double total[SIDES + 1], polygon[2 * SIDES];
+    double total[SIDES + 1], polygon[2 * SIDES], odd;
     int cut[SIDES + 1][SIDES + 1], start = 0;
     /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin again
      * from corners found that way. */
     for (int round = 0; round < 3; round++) {
         runs_split(&r, start, SIDES, total, cut);
         for (int k = 3; k <= SIDES; k++) {
-            double s = fit_polygon(&r, start, cut[k], k, cap2, polygon);
+            double s = fit_polygon(&r, start, cut[k], k, cap2, polygon, &odd);
             if (s < residual[k]) {
                 residual[k] = s;
+                oddness[k] = odd;
                 memcpy(vertices + 2 * SIDES * k, polygon, 2 * k * sizeof *polygon);
             }
         }

@@ -12,6 +12,7 @@ INK_API double ink_open(const double *xy, int32_t n, double *samples, double *re
     double total[SIDES + 1], x0 = xy[0], y0 = xy[1];
     int cut[SIDES + 1][SIDES + 1];
     r.n = SAMPLES;
+    r.stiffness = 1e9; /* straight */
     double length = sample_parts(xy, &n, 1, r.x, r.y, SAMPLES);
     for (int i = 0; i < SAMPLES; i++) {
         samples[2 * i] = r.x[i];
