@@ -26,6 +26,8 @@ PARAMETER = 4.0  # nats to say one parameter to that precision: ln(page / tremor
 ROUND = 35.0  # nats that a round outline is less usual than one of no corners and no sides would be
 FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
+BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
+RARE = 12.0  # nats that an open line is rarer than an outline
 GAP = 3.0  # nats for each observation that an outline lacks
 CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
 
@@ -173,12 +175,14 @@ def bar(index: int, piece: Piece) -> Fitted | None:
         return None
     best = None
     for k in range(1, 6):
-        radius2 = max(piece.extent / 2, 1e-9) ** 2
-        n = OBSERVATIONS * piece.length / (math.pi * max(piece.extent, 1e-9))
-        cost = 0.5 * n * math.log1p(piece.fit.residual[k] / radius2 / TREMOR**2) + 2 * (k + 1) * PARAMETER + 5
+        v = piece.fit.vertices(k)
+        u = np.diff(v, axis=0)
+        turns = np.abs(np.angle((u[1:, 0] + 1j * u[1:, 1]) * (u[:-1, 0] - 1j * u[:-1, 1])))
+        folds = int(np.count_nonzero(turns > 2.0))  # a bar seldom runs back along itself
+        cost = _misfit_of(piece, piece.fit.residual[k]) + RARE + 2 * (k + 1) * PARAMETER + BEND * (k - 1 + folds)
         if best is None or cost < best.cost:
-            residual = math.sqrt(piece.fit.residual[k] / radius2)
-            best = Fitted("bar", (index,), cost, piece.fit.vertices(k), k, residual)
+            residual = math.sqrt(piece.fit.residual[k]) / max(piece.scale, 1e-9)
+            best = Fitted("bar", (index,), cost, v, k, residual)
     return best
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from sim.scene import Scene
 from sketch import group, primitives
 from sketch.ink import Sketch
-from sketch.interpret import inside, interpret
+from sketch.interpret import distance, inside, interpret
 from sketch.pieces import Piece, cut_into_pieces
 from sketch.primitives import Fitted
 from sketch.reading import Reading
@@ -93,15 +93,30 @@ def _context(candidates: list[Fitted], gains: list[float]) -> None:
     """What stands around a reading, told last: it decides between readings that are nearly equal."""
     solid = ("circle", "ellipse", "rectangle", "polygon")
     bodies = [c for k, c in enumerate(candidates) if gains[k] > 0 and c.kind in solid]
+    sizes = [(c, float(np.hypot(*np.ptp(c.outline, axis=0)))) for c in bodies]
     for k, c in enumerate(candidates):
-        if c.kind not in ("cross", "arrow") or gains[k] < -ANCHORS:
+        if gains[k] < -ANCHORS:
             continue
         centre = c.outline.mean(axis=0)
-        over = any(set(b.pieces).isdisjoint(c.pieces) and inside(centre, b.outline) for b in bodies)
+        others = [(b, size) for b, size in sizes if set(b.pieces).isdisjoint(c.pieces)]
+        size = float(np.hypot(*np.ptp(c.outline, axis=0)))
         if c.kind == "cross":
-            gains[k] += ANCHORS if over else -ANCHORS
-        elif over:
-            gains[k] -= ANCHORS
+            gains[k] += ANCHORS if any(inside(centre, b.outline) for b, _ in others) else -ANCHORS
+        elif c.kind == "arrow":
+            gains[k] -= ANCHORS * any(inside(centre, b.outline) for b, _ in others)
+        elif c.kind == "bar":
+            # a short mark that touches an outline is its writer's slip, not a rod
+            if any(
+                size < 0.5 * large and min(distance(c.outline[e], b.outline) for e in (0, -1)) < 0.1 * large
+                for b, large in others
+            ):
+                gains[k] -= ANCHORS
+        elif c.kind == "circle":
+            under = [
+                b for b, large in others if large > 3 * size and (distance(centre, b.outline) < size / 2 or inside(centre, b.outline))
+            ]
+            if len({b.pieces for b in under}) > 1:
+                gains[k] += ANCHORS
 
 
 def _reading(k: int, candidates: list[Fitted], gains: list[float], pieces: list[Piece]) -> Reading:

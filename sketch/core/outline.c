@@ -56,7 +56,7 @@ static const double SHORTNESS = 0.012; /* the spreads say how fast such readings
 
 /* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e: near the unit circle the algebraic distance is the geometric
  * one to first order. Returns the mean squared distance (Sampson's, capped), and the conic. */
-static double fit_round(const double *x, const double *y, int n, double cap2, double conic[5])
+static double fit_round(const double *x, const double *y, const double *factor, int n, double cap2, double conic[5])
 {
     double weight[SAMPLES], distance2[SAMPLES], sum = 0;
     for (int i = 0; i < n; i++)
@@ -91,7 +91,7 @@ static double fit_round(const double *x, const double *y, int n, double cap2, do
             double gx = 2 * x[i] * (1 - conic[0]) - 2 * conic[1] * y[i] - conic[2];
             double gy = 2 * y[i] * (1 + conic[0]) - 2 * conic[1] * x[i] - conic[3];
             distance2[i] = fmin(u * u / fmax(gx * gx + gy * gy, 1e-6), cap2);
-            sum += distance2[i];
+            sum += distance2[i] * factor[i];
             weight[i] = 1 / (1 + distance2[i] / (0.06 * 0.06));
         }
     }
@@ -100,7 +100,7 @@ static double fit_round(const double *x, const double *y, int n, double cap2, do
 
 /* Corners of the k-gon whose sides are the runs bounded by `cut` (counted from `start`), and its mean squared distance.
  * Ink that overshoots a corner lies on its side's line: it pays for the length beyond at a quarter. */
-static double fit_polygon(const Runs *r, int start, const int *cut, int k, double cap2, double *vertices,
+static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double cap2, double *vertices,
                           double *oddness)
 {
     Line side[SIDES];
@@ -132,7 +132,7 @@ static double fit_polygon(const Runs *r, int start, const int *cut, int k, doubl
                 double u = 2 * t / l - 1;
                 h += bow * (1 - u * u);
             }
-            sum += fmin(h * h + 0.0625 * over * over, cap2);
+            sum += fmin(h * h + 0.0625 * over * over, cap2) * factor[(start + i) % r->n];
         }
         const double *c = vertices + 2 * ((q + 2) % k);
         double turn = fabs(atan2(dx * (c[1] - b[1]) - dy * (c[0] - b[0]), dx * (c[0] - b[0]) + dy * (c[1] - b[1])));
@@ -142,6 +142,36 @@ static double fit_polygon(const Runs *r, int start, const int *cut, int k, doubl
     }
     *oddness = odd;
     return sum / r->n;
+}
+
+/* A writer's precision goes with the size of what is drawn: where a part of the chain closes by itself, being off counts by
+ * that part's own thickness. A little loop is no careless piece of something large. */
+static void own_scale(const double *z, const int32_t *part_end, int parts, double ink, double factor[SAMPLES])
+{
+    double done = 0;
+    int k = 0;
+    for (int p = 0, i = 0; p < parts; i = part_end[p++]) {
+        double l = 0, m[2] = {0, 0}, s[3] = {0, 0, 0}, f = 1;
+        for (int j = i + 1; j < part_end[p]; j++) {
+            double dx = z[2 * j] - z[2 * j - 2], dy = z[2 * j + 1] - z[2 * j - 1], w = hypot(dx, dy);
+            double cx = 0.5 * (z[2 * j] + z[2 * j - 2]), cy = 0.5 * (z[2 * j + 1] + z[2 * j - 1]);
+            l += w;
+            m[0] += w * cx;
+            m[1] += w * cy;
+            s[0] += w * (cx * cx + dx * dx / 12);
+            s[1] += w * (cx * cy + dx * dy / 12);
+            s[2] += w * (cy * cy + dy * dy / 12);
+        }
+        int e = part_end[p] - 1;
+        if (parts > 1 && l > 0 && hypot(z[2 * e] - z[2 * i], z[2 * e + 1] - z[2 * i + 1]) < 0.15 * l) {
+            double xx = s[0] / l - m[0] * m[0] / (l * l), yy = s[2] / l - m[1] * m[1] / (l * l);
+            double xy = s[1] / l - m[0] * m[1] / (l * l), half = 0.5 * (xx - yy);
+            f = 1 / fmin(fmax(2 * (0.5 * (xx + yy) - sqrt(half * half + xy * xy)), 1e-4), 1);
+        }
+        done += l;
+        for (; k < SAMPLES && (p + 1 == parts || (k + 0.5) * ink / SAMPLES <= done); k++)
+            factor[k] = f;
+    }
 }
 
 /* Fit the readings of a closed chain of ink.
@@ -178,9 +208,11 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     r.n = SAMPLES;
     r.stiffness = tremor * tremor / (BOW * BOW);
     length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
+    double factor[SAMPLES];
+    own_scale(z, part_end, parts, length[0], factor);
     runs_prepare(&r);
     double cap2 = cap * cap;
-    conic[5] = fit_round(r.x, r.y, SAMPLES, cap2, conic);
+    conic[5] = fit_round(r.x, r.y, factor, SAMPLES, cap2, conic);
 
     for (int k = 0; k <= SIDES; k++)
         residual[k] = INFINITY;
@@ -191,7 +223,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     for (int round = 0; round < 3; round++) {
         runs_split(&r, start, SIDES, total, cut);
         for (int k = 3; k <= SIDES; k++) {
-            double s = fit_polygon(&r, start, cut[k], k, cap2, polygon, &odd);
+            double s = fit_polygon(&r, factor, start, cut[k], k, cap2, polygon, &odd);
             if (s < residual[k]) {
                 residual[k] = s;
                 oddness[k] = odd;
