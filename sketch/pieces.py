@@ -108,9 +108,9 @@ def _without_hooks(points: Array) -> Array:
 
 def _hook_end(points: Array, along: Array, reach: float) -> int:
     """The index of the last sharp turn within `reach` of the start, 0 for none."""
-    stop = int(np.searchsorted(along, reach))
+    stop = int(np.searchsorted(along, reach, side="right"))
     best = 0
-    for i in range(1, min(stop + 1, len(points) - 1)):
+    for i in range(1, min(stop, len(points) - 1)):
         ahead = points[min(int(np.searchsorted(along, along[i] + reach)), len(points) - 1)] - points[i]
         back = points[i] - points[0]
         if float(ahead @ back) < 0.5 * float(np.hypot(*ahead) * np.hypot(*back)):

@@ -89,7 +89,8 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
     fit = fit_closed(parts, least_axis, CAP, TREMOR / 2)
     names = tuple(sorted({i for i, _ in order}))
     gaps = GAP * OBSERVATIONS * fit.gap / (2 * math.pi)
-    out = [_round(fit, names, gaps)]
+    ring = _round(fit, names, gaps)
+    out = [ring] if ring else []
     for k in range(3, 13):
         cost = _misfit(fit.residual[k], fit.ink) + fit.oddness[k] + gaps
         vertices = fit.vertices(k)
@@ -104,17 +105,21 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
     return out
 
 
-def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float) -> Fitted:
+def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float) -> Fitted | None:
     a, b, c, d, e = fit.conic.tolist()
+    if a * a + b * b > 0.5:  # in this frame whatever is round is nearly a circle
+        return None
     m = np.array([[1 - a, -b], [-b, 1 + a]])
     centre = np.linalg.solve(m, np.array([c, d]) / 2)
     level = e + float(centre @ m @ centre)
     to = np.linalg.inv(fit.back)
-    shape = to.T @ m @ to / max(level, 1e-9)  # (p - centre)ᵀ shape (p - centre) = 1, in pixels
+    if not 0.2 < level < 5:
+        return None
+    shape = to.T @ m @ to / level  # (p - centre)ᵀ shape (p - centre) = 1, in pixels
     values, axes = np.linalg.eigh(shape)
-    radii = 1 / np.sqrt(np.maximum(values, 1e-12))
+    radii = 1 / np.sqrt(values)
     middle = fit.mean + fit.back @ centre
-    aspect = math.log(radii[0] / radii[1]) if radii[1] > 0 else 9.0
+    aspect = math.log(radii[0] / radii[1])
     cost = _misfit(fit.round_residual, fit.ink) + gaps
     as_circle = ROUND + 0.5 * (aspect / 0.065) ** 2  # nobody's circles are round
     as_ellipse = ROUND + 2 * PARAMETER + 3
@@ -187,35 +192,46 @@ def bar(index: int, piece: Piece) -> Fitted | None:
 
 
 def cross(pieces: list[Piece], names: tuple[int, ...]) -> Fitted | None:
-    """An X: two bars that cross near their middles; one stroke has a side that joins them."""
-    joining = 0.0
+    """An X: two bars that cross near their middles; in one stroke, further ink joins them."""
     if len(names) == 2:
-        first, second = (pieces[i].fit for i in names)
-        a, b = first.vertices(1)
-        c, d = second.vertices(1)
-        mean_square = (first.residual[1] * first.length + second.residual[1] * second.length) / (
-            first.length + second.length
-        )
-    else:
-        fit = pieces[names[0]].fit
-        v = fit.vertices(3)
-        (a, b), (c, d) = v[:2], v[2:]
-        mean_square, joining = fit.residual[3], float(np.hypot(*(v[2] - v[1])))
+        p, q = (pieces[i] for i in names)
+        a, b = p.fit.vertices(1)
+        c, d = q.fit.vertices(1)
+        misfit = _misfit_of(p, p.fit.residual[1]) + _misfit_of(q, q.fit.residual[1])
+        return _cross_of(a, b, c, d, names, misfit)
+    piece = pieces[names[0]]
+    best = None
+    for k in (3, 4, 5):
+        v = piece.fit.vertices(k)
+        lengths = np.hypot(*np.diff(v, axis=0).T)
+        misfit = _misfit_of(piece, piece.fit.residual[k])
+        for i, j in ((i, j) for i in range(k) for j in range(i + 2, k)):
+            joining = float(lengths.sum() - lengths[i] - lengths[j]) / piece.length
+            extra = PARAMETER + _misfit_free(piece) * max(joining - 0.35, 0.0)  # a third is what one side takes
+            found = _cross_of(v[i], v[i + 1], v[j], v[j + 1], names, misfit + extra)
+            if found is not None and (best is None or found.cost < best.cost):
+                best = found
+    return best
+
+
+def _misfit_free(piece: Piece) -> float:
+    return unread(piece) - STRANGE
+
+
+def _cross_of(a: Array, b: Array, c: Array, d: Array, names: tuple[int, ...], misfit: float) -> Fitted | None:
     where = _crossing(a, b, c, d)
     if where is None:
         return None
     t, s = where
-    if not (0.1 < t < 0.9 and 0.1 < s < 0.9):
+    if not (0.05 < t < 0.95 and 0.05 < s < 0.95):
         return None
     p, q = float(np.hypot(*(b - a))), float(np.hypot(*(d - c)))
     sine = abs((b - a)[0] * (d - c)[1] - (b - a)[1] * (d - c)[0]) / max(p * q, 1e-9)
     if sine < 0.3 or max(p, q) > 3 * min(p, q):
         return None
-    radius = (p + q) / 4
-    ink = (p + q + joining) / radius
     off_centre = ((t - 0.5) ** 2 + (s - 0.5) ** 2) / (2 * 0.15**2) + 0.5 * (math.log(p / q) / 0.3) ** 2
-    cost = 6 * PARAMETER + _misfit(mean_square / radius**2, ink) + off_centre + (PARAMETER if joining else 0)
-    return Fitted("cross", names, cost, np.array([a, b, c, d]), 0, math.sqrt(mean_square) / radius)
+    cost = 6 * PARAMETER + misfit + off_centre
+    return Fitted("cross", names, cost, np.array([a, b, c, d]))
 
 
 def _crossing(a: Array, b: Array, c: Array, d: Array) -> tuple[float, float] | None:

@@ -24,6 +24,7 @@ from sketch.search import best_packing
 __all__ = ["Reading", "Recognition", "recognize"]
 
 ANCHORS = 15.0  # nats that an X is likelier over a body than elsewhere
+DOT = 0.012  # of the page: nobody draws a smaller body
 KINDS = {"ellipse": "polygon", "cross": "anchor", "arrow": "gravity"}
 
 
@@ -50,7 +51,7 @@ def recognize(
     candidates = _candidates(pieces)
     free = [primitives.unread(p) for p in pieces]
     gains = [sum(free[i] for i in c.pieces) - c.cost for c in candidates]
-    _context(candidates, gains)
+    _context(candidates, gains, pieces)
     live = [k for k, gain in enumerate(gains) if gain > 0]
     chosen = best_packing([frozenset(candidates[k].pieces) for k in live], [gains[k] for k in live])
     readings = [_reading(live[k], candidates, gains, pieces) for k in chosen]
@@ -89,10 +90,13 @@ def _candidates(pieces: list[Piece]) -> list[Fitted]:
     return out
 
 
-def _context(candidates: list[Fitted], gains: list[float]) -> None:
+def _context(candidates: list[Fitted], gains: list[float], pieces: list[Piece]) -> None:
     """What stands around a reading, told last: it decides between readings that are nearly equal."""
     solid = ("circle", "ellipse", "rectangle", "polygon")
     bodies = [c for k, c in enumerate(candidates) if gains[k] > 0 and c.kind in solid]
+    lo = np.min([p.box[:2] for p in pieces], axis=0)
+    hi = np.max([p.box[2:] for p in pieces], axis=0)
+    dot = DOT * float(np.hypot(*(hi - lo)))
     sizes = [(c, float(np.hypot(*np.ptp(c.outline, axis=0)))) for c in bodies]
     for k, c in enumerate(candidates):
         if gains[k] < -ANCHORS:
@@ -100,6 +104,8 @@ def _context(candidates: list[Fitted], gains: list[float]) -> None:
         centre = c.outline.mean(axis=0)
         others = [(b, size) for b, size in sizes if set(b.pieces).isdisjoint(c.pieces)]
         size = float(np.hypot(*np.ptp(c.outline, axis=0)))
+        if size < dot:  # where the pen rested
+            gains[k] -= 0.5 * (math.log(dot / max(size, 1e-9)) / 0.1) ** 2
         if c.kind == "cross":
             gains[k] += ANCHORS if any(inside(centre, b.outline) for b, _ in others) else -ANCHORS
         elif c.kind == "arrow":
