@@ -199,9 +199,13 @@ def _small_circles(
         for other in bodies:
             if other is reading or other in pivots:
                 continue
-            line = np.concatenate([other.outline, other.outline[::-1]]) if other.kind == "bar" else other.outline
+            line = (
+                np.concatenate([other.outline, other.outline[::-1]]) if other.kind == "bar" else other.outline
+            )
             depth = distance(centre, line) * (-1 if other.kind != "bar" and inside(centre, line) else 1)
-            small = SMALL * (math.sqrt(areas[id(other)]) if other.kind != "bar" else float(np.ptp(line, axis=0).max()))
+            small = SMALL * (
+                math.sqrt(areas[id(other)]) if other.kind != "bar" else float(np.ptp(line, axis=0).max())
+            )
             if depth < radius and radius < small:
                 under.append((depth, other))
         under.sort(key=lambda t: t[0])

@@ -20,10 +20,10 @@ __all__ = ["Fitted", "arrow", "bar", "closed", "cross", "unread"]
 Array = NDArray[np.float64]
 
 OBSERVATIONS = 30  # independent observations in an outline's ink: neighbouring points err together
-TREMOR = 0.04  # spread of ink about what was meant, as a share of the radius
+TREMOR = 0.05  # spread of ink about what was meant, as a share of the radius
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius
 PARAMETER = 4.0  # nats to say one parameter to that precision: ln(page / tremor)
-ROUND = 35.0  # nats that a round outline is less usual than one of no corners and no sides would be
+ROUND = 40.0  # nats that a round outline is less usual than one of no corners and no sides would be
 FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
 BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
@@ -86,7 +86,7 @@ def _free(ink: float) -> float:
 def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float) -> list[Fitted]:
     """Readings of pieces that, one after another (index, reversed), go once around: round or with corners."""
     parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in order]
-    fit = fit_closed(parts, least_axis, CAP, TREMOR / 2)
+    fit = fit_closed(parts, least_axis, CAP)
     names = tuple(sorted({i for i, _ in order}))
     gaps = GAP * OBSERVATIONS * fit.gap / (2 * math.pi)
     ring = _round(fit, names, gaps)
@@ -184,7 +184,9 @@ def bar(index: int, piece: Piece) -> Fitted | None:
         u = np.diff(v, axis=0)
         turns = np.abs(np.angle((u[1:, 0] + 1j * u[1:, 1]) * (u[:-1, 0] - 1j * u[:-1, 1])))
         folds = int(np.count_nonzero(turns > 2.0))  # a bar seldom runs back along itself
-        cost = _misfit_of(piece, piece.fit.residual[k]) + RARE + 2 * (k + 1) * PARAMETER + BEND * (k - 1 + folds)
+        cost = (
+            _misfit_of(piece, piece.fit.residual[k]) + RARE + 2 * (k + 1) * PARAMETER + BEND * (k - 1 + folds)
+        )
         if best is None or cost < best.cost:
             residual = math.sqrt(piece.fit.residual[k]) / max(piece.scale, 1e-9)
             best = Fitted("bar", (index,), cost, v, k, residual)
@@ -207,7 +209,9 @@ def cross(pieces: list[Piece], names: tuple[int, ...]) -> Fitted | None:
         misfit = _misfit_of(piece, piece.fit.residual[k])
         for i, j in ((i, j) for i in range(k) for j in range(i + 2, k)):
             joining = float(lengths.sum() - lengths[i] - lengths[j]) / piece.length
-            extra = PARAMETER + _misfit_free(piece) * max(joining - 0.35, 0.0)  # a third is what one side takes
+            extra = PARAMETER + _misfit_free(piece) * max(
+                joining - 0.35, 0.0
+            )  # a third is what one side takes
             found = _cross_of(v[i], v[i + 1], v[j], v[j + 1], names, misfit + extra)
             if found is not None and (best is None or found.cost < best.cost):
                 best = found
@@ -223,13 +227,13 @@ def _cross_of(a: Array, b: Array, c: Array, d: Array, names: tuple[int, ...], mi
     if where is None:
         return None
     t, s = where
-    if not (0.05 < t < 0.95 and 0.05 < s < 0.95):
+    if not (0.1 < t < 0.9 and 0.1 < s < 0.9):
         return None
     p, q = float(np.hypot(*(b - a))), float(np.hypot(*(d - c)))
     sine = abs((b - a)[0] * (d - c)[1] - (b - a)[1] * (d - c)[0]) / max(p * q, 1e-9)
     if sine < 0.3 or max(p, q) > 3 * min(p, q):
         return None
-    off_centre = ((t - 0.5) ** 2 + (s - 0.5) ** 2) / (2 * 0.15**2) + 0.5 * (math.log(p / q) / 0.3) ** 2
+    off_centre = ((t - 0.5) ** 2 + (s - 0.5) ** 2) / (2 * 0.12**2) + 0.5 * (math.log(p / q) / 0.3) ** 2
     cost = 6 * PARAMETER + misfit + off_centre
     return Fitted("cross", names, cost, np.array([a, b, c, d]))
 

@@ -99,7 +99,7 @@ def _context(candidates: list[Fitted], gains: list[float], pieces: list[Piece]) 
     dot = DOT * float(np.hypot(*(hi - lo)))
     sizes = [(c, float(np.hypot(*np.ptp(c.outline, axis=0)))) for c in bodies]
     for k, c in enumerate(candidates):
-        if gains[k] < -ANCHORS:
+        if gains[k] < -2 * ANCHORS:
             continue
         centre = c.outline.mean(axis=0)
         others = [(b, size) for b, size in sizes if set(b.pieces).isdisjoint(c.pieces)]
@@ -107,7 +107,7 @@ def _context(candidates: list[Fitted], gains: list[float], pieces: list[Piece]) 
         if size < dot:  # where the pen rested
             gains[k] -= 0.5 * (math.log(dot / max(size, 1e-9)) / 0.1) ** 2
         if c.kind == "cross":
-            gains[k] += ANCHORS if any(inside(centre, b.outline) for b, _ in others) else -ANCHORS
+            gains[k] += ANCHORS if any(inside(centre, b.outline) for b, _ in others) else -2 * ANCHORS
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * any(inside(centre, b.outline) for b, _ in others)
         elif c.kind == "bar":
@@ -119,7 +119,9 @@ def _context(candidates: list[Fitted], gains: list[float], pieces: list[Piece]) 
                 gains[k] -= ANCHORS
         elif c.kind == "circle":
             under = [
-                b for b, large in others if large > 3 * size and (distance(centre, b.outline) < size / 2 or inside(centre, b.outline))
+                b
+                for b, large in others
+                if large > 3 * size and (distance(centre, b.outline) < size / 2 or inside(centre, b.outline))
             ]
             if len({b.pieces for b in under}) > 1:
                 gains[k] += ANCHORS

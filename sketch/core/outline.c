@@ -48,8 +48,10 @@ static Frame normal_frame(const double *xy, int n, double least_axis)
     return f;
 }
 
-static const double BOW = 0.025;   /* usual bow of a straight side, as a share of its length */
+static const double BOW = 0.025;    /* usual bow of a straight side, as a share of its length */
+static const double STIFFNESS = 0.02; /* (tremor / bow)²: while splitting, how much rather a side trembles than bows */
 static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
+static const double REFLEX = 1.2;  /* likewise one that turns inward */
 static const double FLATNESS = 0.12;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
 static const double SHORTNESS = 0.012; /* the spreads say how fast such readings become unlikely */
@@ -116,10 +118,11 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         double end[2] = {r->x[e], r->y[e]}, begin[2] = {r->x[b], r->y[b]};
         corner(&side[before], &side[q], end, begin, vertices + 2 * q);
     }
-    double sum = 0, odd = 0, around = 0;
+    double sum = 0, odd = 0, around = 0, area = 0;
     for (int q = 0; q < k; q++) {
         const double *a = vertices + 2 * q, *b = vertices + 2 * ((q + 1) % k);
         around += hypot(b[0] - a[0], b[1] - a[1]);
+        area += a[0] * b[1] - a[1] * b[0];
     }
     for (int q = 0; q < k; q++) {
         const double *a = vertices + 2 * q, *b = vertices + 2 * ((q + 1) % k);
@@ -135,8 +138,10 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
             sum += fmin(h * h + 0.0625 * over * over, cap2) * factor[(start + i) % r->n];
         }
         const double *c = vertices + 2 * ((q + 2) % k);
-        double turn = fabs(atan2(dx * (c[1] - b[1]) - dy * (c[0] - b[0]), dx * (c[0] - b[0]) + dy * (c[1] - b[1])));
-        double bent = bow / (BOW * fmax(l, 1e-9)), flat = fmax(FLAT - turn, 0) / FLATNESS;
+        double turn = atan2(dx * (c[1] - b[1]) - dy * (c[0] - b[0]), dx * (c[0] - b[0]) + dy * (c[1] - b[1]));
+        int reflex = turn * area < 0;
+        double bent = bow / (BOW * fmax(l, 1e-9));
+        double flat = fmax((reflex ? REFLEX : FLAT) - fabs(turn), 0) / FLATNESS;
         double brief = fmax(fmin(SHORT, 0.7 / k) - l / fmax(around, 1e-9), 0) / SHORTNESS;
         odd += 0.5 * (bent * bent + flat * flat + brief * brief);
     }
@@ -179,12 +184,11 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
  * least_axis: the frame's radii are at least this long [pixels]: below, the pen's own width is what one sees.
  * cap: distances count up to this, in the frame.
- * tremor: usual distance of ink from what was meant, in the frame.
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; conic: 5 and its mean squared
  * distance; residual[k]: mean squared distance of the best k-gon; oddness[k]: nats that its bows, flat corners and short
  * sides cost; vertices[k][SIDES][2] in the frame. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
-                        double tremor, double *frame, double *length, double *conic, double *residual, double *oddness, double *vertices,
+                        double *frame, double *length, double *conic, double *residual, double *oddness, double *vertices,
                         double *scratch)
 {
     int n = part_end[parts - 1];
@@ -206,7 +210,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     }
     Runs r;
     r.n = SAMPLES;
-    r.stiffness = tremor * tremor / (BOW * BOW);
+    r.stiffness = STIFFNESS;
     length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
     double factor[SAMPLES];
     own_scale(z, part_end, parts, length[0], factor);
