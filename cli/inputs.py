@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from cli.arguments import UsageError
-from sim.scene import MAX_BYTES, InputError, Scene
+from sim.scene import InputError, Scene
 
 if TYPE_CHECKING:
     from sketch.recognize import Recognition
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["Loaded", "load", "read", "recognize_bytes"]
 
 STDIN = "-"
+MAX_BYTES = 64 << 20  # of any input: a photo of 12 megapixels has 2 to 15 MB
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,28 @@ DEFAULT_TOLERANCE = 1e-4
 
 _EVENT_KINDS = ("impact", "contact begun", "contact ended", "rest")
 _PROFILE = (
-    "total_time flight_time smooth_time event_time impact_time crowd_time sample_time flights events impacts "
-    "smooth_steps smooth_evals crowd_steps crowd_contacts pairs rows rests separated separation let_overlap "
-    "budget_spent"
-).split()
+    "total_time",
+    "flight_time",
+    "smooth_time",
+    "event_time",
+    "impact_time",
+    "crowd_time",
+    "sample_time",
+    "flights",
+    "events",
+    "impacts",
+    "smooth_steps",
+    "smooth_evals",
+    "crowd_steps",
+    "crowd_contacts",
+    "pairs",
+    "rows",
+    "rests",
+    "separated",
+    "separation",
+    "let_overlap",
+    "budget_spent",
+)
 
 _BODY_DOUBLES = 11  # of SimBody
 
@@ -140,8 +158,8 @@ def _sample_count(duration: float, fps: float, bodies: int) -> int:
 
 def _pack(scene: Scene) -> tuple[_Input, list[array[Any]]]:
     """The scene as the core's flat arrays, and what must stay alive while they are used."""
-    index = {body.id: i for i, body in enumerate(scene.bodies)}
-    index_of: dict[str | None, int] = {**index, None: -1}
+    index_of: dict[str | None, int] = {body.id: i for i, body in enumerate(scene.bodies)}
+    index_of[None] = -1
     bodies, vertices, points = array("d"), array("d"), array("d")
     start, anchored, pairs = array("i", [0]), array("i"), array("i")
     for b in scene.bodies:
@@ -161,7 +179,7 @@ def _pack(scene: Scene) -> tuple[_Input, list[array[Any]]]:
     for j in scene.joints:
         pairs.extend((index_of[j.bodies[0]], index_of[j.bodies[1]]))
         points.extend(j.position)
-    parts = [bodies, start, anchored, vertices, pairs, points]
+    parts: list[array[Any]] = [bodies, start, anchored, vertices, pairs, points]
     addresses = [part.buffer_info()[0] for part in parts]
     packed = _Input(len(scene.bodies), len(scene.joints), *addresses, (ctypes.c_double * 2)(*scene.gravity))
     return packed, parts

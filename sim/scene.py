@@ -12,27 +12,17 @@ from typing import Any, TypeAlias
 
 import msgspec
 
+from sim.json_input import InputError, from_msgspec, kind_of_value, parse_json
+
 __all__ = ["Body", "Circle", "InputError", "Joint", "Polygon", "Rectangle", "Scene", "View", "parse_json"]
 
 Vector: TypeAlias = tuple[float, float]
 
 _KEPT = "(kept)"  # the encoded name of `extra`: no key of a file is meant by it
-MAX_BYTES = 64 << 20  # a scene of 100,000 bodies has about 20 MB
+LARGEST = 1e9  # of coordinates, lengths, speeds: beyond it doubles have no micrometres left
+SMALLEST = 1e-9  # of lengths [m]
+MOST_MASS = 1e30  # of masses, moments and densities, and 1 over it the least
 MAX_VERTICES = 10_000  # of one polygon: the check for crossing sides is quadratic at worst
-
-
-class InputError(ValueError):
-    """Input that cannot be used: where, what is wrong, and what to do about it.
-
-    Attributes:
-        path: the element, as ``bodies[3].position[0]`` or ``line 3 column 5``; empty for the whole input.
-        problem: what is wrong there, in a few words.
-        hint: what to do; may be empty.
-    """
-
-    def __init__(self, path: str, problem: str, hint: str = "") -> None:
-        super().__init__(f"{path}: {problem}" if path else problem)
-        self.path, self.problem, self.hint = path, problem, hint
 
 
 class Circle(msgspec.Struct, tag="circle", frozen=True):
@@ -160,13 +150,13 @@ class Scene(msgspec.Struct, kw_only=True):
 
     @classmethod
     def from_json(cls, data: bytes | str) -> Scene:
-        return cls.from_dict(parse_json(data, MAX_BYTES))
+        return cls.from_dict(parse_json(data))
 
     @classmethod
     def from_dict(cls, d: Any) -> Scene:
         """Build and check a scene from scene JSON's objects. Raises InputError that names the bad element."""
         if not isinstance(d, dict):
-            raise InputError("", f"a scene is a JSON object, not {_kind(d)}")
+            raise InputError("", f"a scene is a JSON object, not {kind_of_value(d)}")
         _check_header(d)
         if "bodies" not in d:
             raise InputError(
@@ -175,7 +165,7 @@ class Scene(msgspec.Struct, kw_only=True):
         try:
             scene = msgspec.convert(d, cls)
         except msgspec.ValidationError as e:
-            raise _from_msgspec(e) from None
+            raise from_msgspec(e) from None
         _keep_unknown_keys(scene, d)
         scene.check()
         for body in scene.bodies:
@@ -210,7 +200,7 @@ class Scene(msgspec.Struct, kw_only=True):
 
     def check(self) -> None:
         """Raise InputError at the first value that no physical scene can have."""
-        _finite(self.gravity, "gravity")
+        _vector(self.gravity, "gravity")
         seen: dict[str, int] = {}
         for i, body in enumerate(self.bodies):
             path = f"bodies[{i}]"
@@ -276,33 +266,36 @@ def _centre(body: Body) -> None:
 # ---------------------------------------------------------------- checks
 
 
-def _finite(values: tuple[float, ...], path: str) -> None:
-    for k, v in enumerate(values):
-        if not math.isfinite(v):
-            raise InputError(f"{path}[{k}]", f"{v} is not a finite number")
-
-
-def _number(value: float, path: str) -> None:
+def _number(value: float, path: str, most: float = LARGEST) -> None:
     if not math.isfinite(value):
         raise InputError(path, f"{value} is not a finite number")
+    if abs(value) > most:
+        raise InputError(path, f"{value:g} is beyond {most:g}", "units are metres, seconds and kilograms")
 
 
-def _positive(value: float, path: str) -> None:
-    _number(value, path)
+def _vector(values: tuple[float, ...], path: str) -> None:
+    for k, v in enumerate(values):
+        _number(v, f"{path}[{k}]")
+
+
+def _positive(value: float, path: str, least: float = 0.0, most: float = LARGEST) -> None:
+    _number(value, path, most)
     if value <= 0:
         raise InputError(path, f"{value:g} is not greater than 0")
+    if value < least:
+        raise InputError(path, f"{value:g} is below {least:g}", "units are metres, seconds and kilograms")
 
 
 def _check_body(body: Body, path: str) -> None:
-    _finite(body.position, f"{path}.position")
-    _finite(body.velocity, f"{path}.velocity")
+    _vector(body.position, f"{path}.position")
+    _vector(body.velocity, f"{path}.velocity")
     _number(body.angle, f"{path}.angle")
     _number(body.angular_velocity, f"{path}.angular_velocity")
-    _positive(body.density, f"{path}.density")
+    _positive(body.density, f"{path}.density", 1 / MOST_MASS, MOST_MASS)
     for name, value in (("mass", body.mass), ("moment", body.moment)):
         if value is not None:
             try:
-                _positive(value, f"{path}.{name}")
+                _positive(value, f"{path}.{name}", 1 / MOST_MASS, MOST_MASS)
             except InputError as e:
                 e.hint = 'a body that must not move has "anchored": true'
                 raise
@@ -323,11 +316,11 @@ def _is_color(text: str) -> bool:
 
 def _check_shape(shape: Shape, path: str) -> None:
     if isinstance(shape, Circle):
-        _positive(shape.radius, f"{path}.radius")
+        _positive(shape.radius, f"{path}.radius", SMALLEST)
         return
     if isinstance(shape, Rectangle):
         for k in (0, 1):
-            _positive(shape.size[k], f"{path}.size[{k}]")
+            _positive(shape.size[k], f"{path}.size[{k}]", SMALLEST)
         return
     v = shape.vertices
     if len(v) < 3:
@@ -335,7 +328,7 @@ def _check_shape(shape: Shape, path: str) -> None:
     if len(v) > MAX_VERTICES:
         raise InputError(f"{path}.vertices", f"{len(v)} vertices; at most {MAX_VERTICES} are taken")
     for k, p in enumerate(v):
-        _finite(p, f"{path}.vertices[{k}]")
+        _vector(p, f"{path}.vertices[{k}]")
         if p == v[k - 1]:
             raise InputError(f"{path}.vertices[{k}]", "the same point as the vertex before it")
     crossing = _first_crossing(v)
@@ -348,7 +341,7 @@ def _check_shape(shape: Shape, path: str) -> None:
         )
     area, _, _ = area_properties(shape)
     reach = max(abs(c) for p in v for c in (p[0] - v[0][0], p[1] - v[0][1]))
-    if area <= 1e-12 * reach * reach:
+    if area <= 1e-12 * reach * reach or reach < SMALLEST:
         raise InputError(f"{path}.vertices", "the polygon has no area")
 
 
@@ -401,7 +394,7 @@ def _meet(a: Vector, b: Vector, c: Vector, d: Vector) -> bool:
 def _check_joint(joint: Joint, ids: dict[str, int], path: str) -> None:
     if joint.type != "pivot":
         raise InputError(f"{path}.type", f"{joint.type!r} is not a kind of joint", 'the only kind is "pivot"')
-    _finite(joint.position, f"{path}.position")
+    _vector(joint.position, f"{path}.position")
     a, b = joint.bodies
     for k, name in enumerate((a, b)):
         if name is not None and name not in ids:
@@ -427,64 +420,6 @@ def _check_header(d: dict[str, Any]) -> None:
 
 
 # ---------------------------------------------------------------- JSON
-
-
-def parse_json(data: bytes | str, max_bytes: int = MAX_BYTES) -> Any:
-    """JSON to objects. Raises InputError with line and column for what is not JSON, or when it is too long.
-
-    NaN and Infinity are no JSON, but programs write them: they are let through here, so that the check that
-    follows can name the element that has one.
-    """
-    if len(data) > max_bytes:
-        raise InputError("", f"{len(data) / 1e6:.0f} MB of JSON; at most {max_bytes / 1e6:.0f} MB are taken")
-    if not data.strip():
-        raise InputError("", "the input is empty")
-    try:
-        return msgspec.json.decode(data)
-    except msgspec.DecodeError as e:
-        with contextlib.suppress(ValueError, RecursionError):
-            return json.loads(data)
-        raise _not_json(data, e) from None
-    except RecursionError:
-        raise InputError("", "JSON nested too deeply") from None
-
-
-def _not_json(data: bytes | str, cause: Exception) -> InputError:
-    try:
-        json.loads(data)
-    except json.JSONDecodeError as e:
-        return InputError(f"line {e.lineno} column {e.colno}", f"not JSON: {e.msg[:1].lower()}{e.msg[1:]}")
-    except UnicodeDecodeError as e:
-        return InputError(f"byte {e.start}", "not JSON: not UTF-8 text")
-    except RecursionError:
-        return InputError("", "JSON nested too deeply")
-    except ValueError:
-        pass
-    return InputError("", f"not JSON: {cause}")
-
-
-def _from_msgspec(e: msgspec.ValidationError) -> InputError:
-    """msgspec's 'Expected `float`, got `str` - at `$.bodies[0].angle`' as path and problem."""
-    text, _, path = str(e).partition(" - at `")
-    path = path.rstrip("`").removeprefix("$").removeprefix(".")
-    if text.startswith("Object missing required field "):
-        name = text.split("`")[1]
-        return InputError(f"{path}.{name}" if path else name, "missing")
-    return InputError(path, text[:1].lower() + text[1:].replace("`", ""))
-
-
-def _kind(value: Any) -> str:
-    if value is None:
-        return "null"
-    names = {
-        bool: "a boolean",
-        int: "a number",
-        float: "a number",
-        str: "a string",
-        list: "a list",
-        dict: "an object",
-    }
-    return names.get(type(value), type(value).__name__)
 
 
 _HEADER = {"format", "version"}

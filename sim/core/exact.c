@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-#define BUCKET_LIMIT 400.0 /* events of one body that may come in a burst */
-#define BUCKET_LEAK 200.0  /* and a second in the long run */
+#define BUCKET_LIMIT 400.0  /* events of one body that may come in a burst */
+#define BUCKET_LEAK 200.0   /* and a second in the long run */
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
 #define PAIRS_OF_FEW 1e6    /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
@@ -133,7 +133,8 @@ int island_advance(Exact *e, int32_t index, double from) {
     if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
     if (status == SIM_OK) status = smooth_project(&e->smooth, &e->part);
     if (status == SIM_OK)
-        status = smooth_step(&e->smooth, &e->part, from, fmax(e->end, from + 1e-9), &island->step, e->motion, &island->ended);
+        status = smooth_step(&e->smooth, &e->part, from, fmax(e->end, from + 1e-9), &island->step, e->motion,
+                             &island->ended);
     for (int32_t k = 0; k < island->contact_count; k++) island->contact[k] = e->part.contact[k];
     for (int32_t k = 0; k < island->member_count; k++) {
         Track *track = &e->track[island->member[k]];
@@ -199,8 +200,10 @@ int exact_start(Exact *e, double time) {
     for (int32_t i = 1; i < n; i++) {
         if (!is_tracked(e, i)) continue;
         State state = body_state(&e->world->body[i]);
-        e->track[i] = (Track){.motion = motion_in_flight(&state, time, e->world->gravity), .island = -1,
-                              .touch_time = INFINITY, .bucket_time = time};
+        e->track[i] = (Track){.motion = motion_in_flight(&state, time, e->world->gravity),
+                              .island = -1,
+                              .touch_time = INFINITY,
+                              .bucket_time = time};
         e->world->body[i].mode = MODE_SMOOTH; /* not looked at yet */
     }
     for (int32_t i = 1; i < n; i++) {
@@ -291,8 +294,11 @@ int exact_after_crowd(Exact *e, int32_t body, double from, double to) {
     if (mode == MODE_FLIGHT && is_over_budget(e, to)) e->world->body[body].mode = mode = MODE_CROWD;
     if (mode == MODE_CROWD) return SIM_OK;
     State state = body_state(&e->world->body[body]);
-    *track = (Track){.motion = mode == MODE_REST ? motion_at_rest(&state, to) : motion_in_flight(&state, to, e->world->gravity),
-                     .island = -1, .touch_time = INFINITY, .bucket_time = to};
+    *track = (Track){.motion = mode == MODE_REST ? motion_at_rest(&state, to)
+                                                 : motion_in_flight(&state, to, e->world->gravity),
+                     .island = -1,
+                     .touch_time = INFINITY,
+                     .bucket_time = to};
     e->world->profile.rests += mode == MODE_REST;
     e->world->profile.flights += mode == MODE_FLIGHT;
     e->changed[body] = true;

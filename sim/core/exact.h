@@ -15,14 +15,14 @@ typedef struct Island {
     int32_t member_count, contact_count, member_capacity, contact_capacity;
     int32_t *member;
     Contact *contact;
-    double step;  /* length to try next [s] */
-    bool ended;   /* the modes of its contacts end with its present motion */
+    double step; /* length to try next [s] */
+    bool ended;  /* the modes of its contacts end with its present motion */
     bool in_use;
 } Island;
 
 typedef struct Track {
     Motion motion;
-    int32_t island;   /* -1 for flight and rest */
+    int32_t island;    /* -1 for flight and rest */
     double touch_time; /* first touch with anything, as far as the motions reach */
     int32_t partner;
     double bucket, bucket_time; /* how many events it had lately */
@@ -33,16 +33,16 @@ typedef struct Exact {
     Recorder *recorder;
     Slack slack;
     double tolerance, end;
-    Track *track;     /* of every body */
+    Track *track; /* of every body */
     Island *island;
     int32_t island_count;
-    System group;     /* the bodies about an event */
-    System part;      /* one island */
+    System group; /* the bodies about an event */
+    System part;  /* one island */
     ContactSolver solver;
     Smooth smooth;
-    Motion *motion;   /* of the part's members, from a step */
+    Motion *motion; /* of the part's members, from a step */
     double *acceleration;
-    int32_t *root;    /* union-find over the group */
+    int32_t *root; /* union-find over the group */
     Vec *impulse;
     int32_t impulse_capacity;
     Touching *touching;

@@ -23,9 +23,17 @@ bool feature_make(const World *world, int32_t shape_a, int32_t shape_b, int32_t 
     int32_t i = a->count > 1 ? number / b->count : 0, j = number % b->count;
     const Vec *va = &world->vertex[a->first], *vb = &world->vertex[b->first];
     const Side *side = &world->side[b->first];
-    *out = (Feature){.shape_a = shape_a, .shape_b = shape_b, .body_a = a->body, .body_b = b->body,
-                     .index_a = i, .index_b = j, .is_side = is_side,
-                     .point_a = va[i], .point_b = vb[j], .radius_a = a->radius, .radius_b = b->radius};
+    *out = (Feature){.shape_a = shape_a,
+                     .shape_b = shape_b,
+                     .body_a = a->body,
+                     .body_b = b->body,
+                     .index_a = i,
+                     .index_b = j,
+                     .is_side = is_side,
+                     .point_a = va[i],
+                     .point_b = vb[j],
+                     .radius_a = a->radius,
+                     .radius_b = b->radius};
     if (a->count > 1 && world->side[a->first + i].reflex) return false;
     if (b->count == 1) return true;
     out->along = side[j].along;
@@ -88,6 +96,6 @@ void feature_bias(const Feature *f, const Placed *a, const Placed *b, double *no
 }
 
 bool feature_same(const Feature *f, const Feature *g) {
-    return f->shape_a == g->shape_a && f->shape_b == g->shape_b && f->index_a == g->index_a && f->index_b == g->index_b &&
-           f->is_side == g->is_side;
+    return f->shape_a == g->shape_a && f->shape_b == g->shape_b && f->index_a == g->index_a &&
+           f->index_b == g->index_b && f->is_side == g->is_side;
 }

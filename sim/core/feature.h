@@ -16,18 +16,18 @@ typedef struct Feature {
     bool is_corner;           /* b's point is a polygon's corner, and touches only outwards */
     Vec point_a, point_b;     /* in the bodies' frames */
     double radius_a, radius_b;
-    Vec along;                /* b's side from point_b on, unit; of a corner the direction of the side before */
-    Vec after;                /* of a corner: the direction of the side after it */
-    double length;            /* of the side */
+    Vec along;     /* b's side from point_b on, unit; of a corner the direction of the side before */
+    Vec after;     /* of a corner: the direction of the side after it */
+    double length; /* of the side */
 } Feature;
 
 /* A feature at one moment. The normal points from b to a; `along` is the normal turned by a quarter. */
 typedef struct Gap {
-    double gap, rate;  /* [m], [m/s] */
+    double gap, rate; /* [m], [m/s] */
     Vec normal, along;
-    Vec point;         /* of contact */
-    double slip;       /* velocity of a against b along `along` at the point [m/s] */
-    double margin;     /* how far the foot is inside the side or the corner's cone [m]; negative: no contact here */
+    Vec point;     /* of contact */
+    double slip;   /* velocity of a against b along `along` at the point [m/s] */
+    double margin; /* how far the foot is inside the side or the corner's cone [m]; negative: no contact here */
 } Gap;
 
 /* A body at one moment, as the gap functions want it. */

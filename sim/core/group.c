@@ -73,7 +73,9 @@ static int find_contacts(Exact *e) {
             for (int32_t k = 0; k < count && status == SIM_OK; k++) {
                 const Touching *t = &e->touching[k];
                 const Shape *a = &e->world->shape[t->feature.shape_a], *b = &e->world->shape[t->feature.shape_b];
-                Contact contact = {.feature = t->feature, .friction = pair_friction(a, b), .elasticity = pair_elasticity(a, b),
+                Contact contact = {.feature = t->feature,
+                                   .friction = pair_friction(a, b),
+                                   .elasticity = pair_elasticity(a, b),
                                    .hold = fmax(fmin(t->gap.gap, e->slack.gap), -e->slack.gap)};
                 status = system_add_contact(g, &contact);
             }
@@ -133,12 +135,15 @@ static int resolve(Exact *e, double time) {
         int32_t a = g->place_of[f->body_a], b = g->place_of[f->body_b];
         Placed still = {{{0, 0}, 1, 0}, {0, 0}, 0};
         Gap gap = feature_gap(f, a >= 0 ? &g->placed[a] : &still, b >= 0 ? &g->placed[b] : &still);
-        SimEvent event = {.time = time, .kind = SIM_IMPACT,
-                          .body = {e->world->shape[f->shape_b].source, e->world->shape[f->shape_a].source},
-                          .point = {gap.point.x, gap.point.y},
-                          .impulse = {p.x * row[0].ja[0] + p.y * row[1].ja[0], p.x * row[0].ja[1] + p.y * row[1].ja[1]}};
-        if (row->a < 0) event.impulse[0] = -p.x * row[0].jb[0] - p.y * row[1].jb[0],
-                        event.impulse[1] = -p.x * row[0].jb[1] - p.y * row[1].jb[1];
+        SimEvent event = {
+            .time = time,
+            .kind = SIM_IMPACT,
+            .body = {e->world->shape[f->shape_b].source, e->world->shape[f->shape_a].source},
+            .point = {gap.point.x, gap.point.y},
+            .impulse = {p.x * row[0].ja[0] + p.y * row[1].ja[0], p.x * row[0].ja[1] + p.y * row[1].ja[1]}};
+        if (row->a < 0)
+            event.impulse[0] = -p.x * row[0].jb[0] - p.y * row[1].jb[0],
+            event.impulse[1] = -p.x * row[0].jb[1] - p.y * row[1].jb[1];
         status = record_event(e->recorder, &event);
     }
     return status;

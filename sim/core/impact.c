@@ -56,7 +56,8 @@ static int lay_out(ContactSolver *solver, Problem *p, System *system, const bool
         solver->index_size = solver->index ? 2 * ints : 0;
     }
     if (!solver->size || !solver->index_size) return SIM_OUT_OF_MEMORY;
-    *p = (Problem){.system = system, .joints = (int32_t)joints, .contacts = (int32_t)contacts, .width = (int32_t)rows + 1};
+    *p = (Problem){
+        .system = system, .joints = (int32_t)joints, .contacts = (int32_t)contacts, .width = (int32_t)rows + 1};
     p->reduced = solver->block;
     p->M = p->reduced + rows * (rows + 1);
     p->q = p->M + most * most;
@@ -247,8 +248,10 @@ static int exchange_without_gain(ContactSolver *solver, System *s, Rounds *r, co
         memcpy(s->state, r->before, states);
         for (int32_t k = 0; k < s->row_count; k++)
             row_push(s, &s->row[k], r->force[k] + part * (r->elastic_force[k] - r->force[k]));
-        if (kinetic_energy(s) <= energy) low = part;
-        else high = part;
+        if (kinetic_energy(s) <= energy)
+            low = part;
+        else
+            high = part;
     }
     memcpy(s->state, r->before, states);
     for (int32_t k = 0; k < s->row_count; k++) {

@@ -8,8 +8,8 @@ typedef struct Recorder {
     const World *world;
     double fps;
     int64_t sample_count;
-    double *frames;      /* sample_count x sources x 6 */
-    int64_t *next;       /* of every body: its first sample that is not written yet */
+    double *frames; /* sample_count x sources x 6 */
+    int64_t *next;  /* of every body: its first sample that is not written yet */
     SimEvent *event;
     int64_t event_count, event_capacity;
 } Recorder;
@@ -24,6 +24,5 @@ void record_motion(Recorder *recorder, int32_t body, const Motion *motion, doubl
 void record_state(Recorder *recorder, int32_t body, double time);
 
 int record_event(Recorder *recorder, const SimEvent *event);
-
 
 #endif

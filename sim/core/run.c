@@ -17,7 +17,8 @@ struct Sim {
 int32_t sim_abi(void) { return SIM_ABI; }
 
 size_t sim_struct_size(int32_t which) {
-    const size_t sizes[] = {sizeof(SimBody), sizeof(SimInput), sizeof(SimOptions), sizeof(SimEvent), sizeof(SimProfile)};
+    const size_t sizes[] = {sizeof(SimBody), sizeof(SimInput), sizeof(SimOptions), sizeof(SimEvent),
+                            sizeof(SimProfile)};
     return which >= 0 && which < 5 ? sizes[which] : 0;
 }
 
@@ -105,8 +106,10 @@ static int step_crowd(Sim *sim, double from, double to, double tolerance) {
     int status = crowd_step(sim->crowd, world, to - from, tolerance);
     world->profile.crowd_time += now() - start;
     for (int32_t i = 1; i < world->body_count && status == SIM_OK; i++)
-        if (sim->entering[i]) world->body[i].mode = MODE_CROWD;
-        else status = exact_after_crowd(&sim->exact, i, from, to);
+        if (sim->entering[i])
+            world->body[i].mode = MODE_CROWD;
+        else
+            status = exact_after_crowd(&sim->exact, i, from, to);
     return status;
 }
 
@@ -129,7 +132,8 @@ static int advance(Sim *sim, const SimOptions *options, double end) {
         status = absorb(sim, time, next);
         for (int32_t i = 1; i < world->body_count; i++) sim->entering[i] = world->body[i].mode != MODE_CROWD;
         if (status == SIM_OK) status = exact_run(&sim->exact, time, next, &reached);
-        for (int32_t i = 1; i < world->body_count; i++) sim->entering[i] = sim->entering[i] && world->body[i].mode == MODE_CROWD;
+        for (int32_t i = 1; i < world->body_count; i++)
+            sim->entering[i] = sim->entering[i] && world->body[i].mode == MODE_CROWD;
         if (status == SIM_OK && reached > time) status = step_crowd(sim, time, reached, options->tolerance);
         time = reached;
     }

@@ -24,37 +24,37 @@
 enum { SIM_OK = 0, SIM_OUT_OF_MEMORY = 1, SIM_BAD_INPUT = 2, SIM_NOT_FINITE = 3 };
 
 typedef struct SimBody {
-    double x, y, angle;   /* pose of the centre of mass [m, rad] */
-    double vx, vy, spin;  /* [m/s, rad/s] */
-    double mass, moment;  /* [kg, kg m^2] */
+    double x, y, angle;  /* pose of the centre of mass [m, rad] */
+    double vx, vy, spin; /* [m/s, rad/s] */
+    double mass, moment; /* [kg, kg m^2] */
     double friction, elasticity;
-    double radius;        /* of a circle [m]; 0 for a polygon */
+    double radius; /* of a circle [m]; 0 for a polygon */
 } SimBody;
 
 typedef struct SimInput {
     int32_t body_count, joint_count;
     const SimBody *bodies;
-    const int32_t *vertex_start;  /* body_count + 1: body i has vertices [start[i], start[i+1]); a circle none */
-    const int32_t *anchored;      /* body_count, 0 or 1 */
-    const double *vertices;       /* x, y in the body's frame [m], either way round */
-    const int32_t *joint_bodies;  /* two a joint; -1 is the background */
-    const double *joint_points;   /* x, y of each pivot in the scene's frame [m] */
-    double gravity[2];            /* [m/s^2] */
+    const int32_t *vertex_start; /* body_count + 1: body i has vertices [start[i], start[i+1]); a circle none */
+    const int32_t *anchored;     /* body_count, 0 or 1 */
+    const double *vertices;      /* x, y in the body's frame [m], either way round */
+    const int32_t *joint_bodies; /* two a joint; -1 is the background */
+    const double *joint_points;  /* x, y of each pivot in the scene's frame [m] */
+    double gravity[2];           /* [m/s^2] */
 } SimInput;
 
 typedef struct SimOptions {
-    double fps;            /* samples are at k / fps [1/s] */
-    int64_t sample_count;  /* k = 0 ... sample_count - 1 */
-    double tolerance;      /* the error asked for [m] */
+    double fps;           /* samples are at k / fps [1/s] */
+    int64_t sample_count; /* k = 0 ... sample_count - 1 */
+    double tolerance;     /* the error asked for [m] */
 } SimOptions;
 
 typedef struct SimEvent {
     double time;
-    int32_t kind;     /* SIM_IMPACT ... */
-    int32_t body[2];  /* indices of the input's bodies; -1 for none */
+    int32_t kind;    /* SIM_IMPACT ... */
+    int32_t body[2]; /* indices of the input's bodies; -1 for none */
     int32_t reserved;
-    double point[2];    /* [m] */
-    double impulse[2];  /* on body[1] [N s] */
+    double point[2];   /* [m] */
+    double impulse[2]; /* on body[1] [N s] */
 } SimEvent;
 
 enum { SIM_IMPACT = 0, SIM_CONTACT_BEGUN = 1, SIM_CONTACT_ENDED = 2, SIM_REST = 3 };

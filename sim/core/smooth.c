@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LOCAL 0.02         /* the part of the tolerance that one step may err by */
-#define RELAX 1e-10        /* makes redundant rows solvable; refinement takes its effect away again */
-#define DECISIVE 1e-9      /* how far past its limit a force is when its event is taken, of the forces about */
-#define VELOCITY_TIME 1.0  /* an error in velocity counts as what it moves a body by in this time [s] */
+#define LOCAL 0.02        /* the part of the tolerance that one step may err by */
+#define RELAX 1e-10       /* makes redundant rows solvable; refinement takes its effect away again */
+#define DECISIVE 1e-9     /* how far past its limit a force is when its event is taken, of the forces about */
+#define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
 
 int smooth_create(Smooth *s, const World *world, double tolerance, Slack slack) {
     *s = (Smooth){.capacity = world->body_count, .tolerance = tolerance, .slack = slack};
@@ -232,7 +232,8 @@ int smooth_project(Smooth *s, System *system) {
     if (status != SIM_OK || s->active_count == 0) return status;
     factor(s, system);
     for (int pass = 0; pass < 2; pass++) {
-        for (int32_t i = 0; i < s->active_count; i++) s->residual[i] = -row_speed(&system->row[s->active[i]], system->state);
+        for (int32_t i = 0; i < s->active_count; i++)
+            s->residual[i] = -row_speed(&system->row[s->active[i]], system->state);
         substitute(s);
         for (int32_t i = 0; i < s->active_count; i++) {
             Row plain = system->row[s->active[i]];
@@ -328,7 +329,8 @@ static double modes_margin(const Smooth *s, const System *system, double scale) 
         const Contact *c = &system->contact[k];
         if (!c->active) continue;
         int32_t a = system->place_of[c->feature.body_a], b = system->place_of[c->feature.body_b];
-        Gap g = feature_gap(&c->feature, a >= 0 ? &system->placed[a] : &BACKGROUND, b >= 0 ? &system->placed[b] : &BACKGROUND);
+        Gap g = feature_gap(&c->feature, a >= 0 ? &system->placed[a] : &BACKGROUND,
+                            b >= 0 ? &system->placed[b] : &BACKGROUND);
         least = fmin(least, c->force / scale + DECISIVE);
         if (c->slide != 0)
             least = fmin(least, c->slide * g.slip + 0.01 * s->slack.speed);

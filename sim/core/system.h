@@ -12,7 +12,7 @@
 
 typedef struct Contact {
     Feature feature;
-    double hold;               /* the gap that is kept [m]: within the slack of 0 */
+    double hold; /* the gap that is kept [m]: within the slack of 0 */
     double friction, elasticity;
     int slide;                 /* 0: sticks; +1, -1: slides along, against `along` */
     bool active;               /* presses: its normal row holds */
@@ -20,23 +20,23 @@ typedef struct Contact {
 } Contact;
 
 typedef struct Row {
-    int32_t a, b;         /* members; -1 for the background */
-    double ja[3], jb[3];  /* velocity of the row for unit velocities of the members */
-    double fa[3], fb[3];  /* force and torque on the members for a unit of the row's force */
-    double bias;          /* what the row's acceleration has beside J times the accelerations */
+    int32_t a, b;        /* members; -1 for the background */
+    double ja[3], jb[3]; /* velocity of the row for unit velocities of the members */
+    double fa[3], fb[3]; /* force and torque on the members for a unit of the row's force */
+    double bias;         /* what the row's acceleration has beside J times the accelerations */
 } Row;
 
 typedef struct System {
     const World *world;
     int32_t count, joint_count, contact_count, row_count;
     int32_t capacity, contact_capacity, row_capacity;
-    int32_t *member;    /* world's bodies */
-    int32_t *place_of;  /* of every body of the world among the members, or -1 */
-    State *state;       /* of the members */
+    int32_t *member;   /* world's bodies */
+    int32_t *place_of; /* of every body of the world among the members, or -1 */
+    State *state;      /* of the members */
     Placed *placed;
-    int32_t *joint;     /* world's joints */
+    int32_t *joint; /* world's joints */
     Contact *contact;
-    Row *row;           /* 2 a joint, then 2 a contact */
+    Row *row; /* 2 a joint, then 2 a contact */
 } System;
 
 int system_create(System *system, const World *world);
@@ -51,9 +51,9 @@ void system_find_joints(System *system); /* all those that hold a member */
 int system_place(System *system);
 void system_find_bias(System *system);
 
-double row_speed(const Row *row, const State *state);                     /* J v */
-void row_push(const System *system, const Row *row, double impulse);      /* v += M^-1 F' impulse */
-double row_coupling(const System *system, const Row *i, const Row *j);    /* J_i M^-1 F_j' */
+double row_speed(const Row *row, const State *state);                  /* J v */
+void row_push(const System *system, const Row *row, double impulse);   /* v += M^-1 F' impulse */
+double row_coupling(const System *system, const Row *i, const Row *j); /* J_i M^-1 F_j' */
 
 static inline Row *joint_row(const System *s, int32_t k) { return &s->row[2 * k]; }
 static inline Row *contact_row(const System *s, int32_t k) { return &s->row[2 * s->joint_count + 2 * k]; }

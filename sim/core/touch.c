@@ -15,7 +15,8 @@ typedef struct PairBound {
 } PairBound;
 
 /* Bounds over [from, to] for two movers whose shapes reach ra and rb from their centres. */
-static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, double rb, double distance, double from, double to) {
+static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, double rb, double distance, double from,
+                            double to) {
     MotionBound a = motion_bound(ma, from, to), b = motion_bound(mb, from, to);
     double relative = a.is_steady && b.is_steady ? vlength(vsub(a.steady, b.steady)) : a.acceleration + b.acceleration;
     double swing_a = a.spin * a.spin + a.spin_acceleration, swing_b = b.spin * b.spin + b.spin_acceleration;
@@ -99,8 +100,9 @@ static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, con
         if (!feature_make(s->world, ia, ib, k, &f) || is_closed(s, &f)) continue;
         bool a_first = f.body_a == s->a.body;
         Gap g = feature_gap(&f, a_first ? pa : pb, a_first ? pb : pa);
-        step = fmin(step, feature_step(s->slack, &g, bound, f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba)
-                                                                       : fmin(bound->steer_ab, bound->steer_ba)));
+        step = fmin(step, feature_step(s->slack, &g, bound,
+                                       f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba)
+                                                 : fmin(bound->steer_ab, bound->steer_ba)));
     }
     return step;
 }
@@ -160,8 +162,9 @@ static bool leads_away(const World *world, const Feature *f, const Placed *a, Ve
 static bool merge_same_point(Touching *out, int32_t count, const Touching *found, double near) {
     for (int32_t k = 0; k < count; k++) {
         Touching *had = &out[k];
-        bool same_pair = (had->feature.shape_a == found->feature.shape_a && had->feature.shape_b == found->feature.shape_b) ||
-                         (had->feature.shape_a == found->feature.shape_b && had->feature.shape_b == found->feature.shape_a);
+        bool same_pair =
+            (had->feature.shape_a == found->feature.shape_a && had->feature.shape_b == found->feature.shape_b) ||
+            (had->feature.shape_a == found->feature.shape_b && had->feature.shape_b == found->feature.shape_a);
         if (!same_pair || vlength(vsub(had->gap.point, found->gap.point)) > near) continue;
         if (fabs(vdot(had->gap.normal, found->gap.normal)) < 1 - 1e-9) {
             double faster = had->gap.rate - found->gap.rate;

@@ -31,7 +31,8 @@ static void merge_pinned(const SimInput *input, int32_t *parent, Tie *ties, doub
         merged = false;
         int32_t count = 0;
         for (int32_t j = 0; j < input->joint_count; j++) {
-            int32_t a = find(parent, input->joint_bodies[2 * j] + 1), b = find(parent, input->joint_bodies[2 * j + 1] + 1);
+            int32_t a = find(parent, input->joint_bodies[2 * j] + 1),
+                    b = find(parent, input->joint_bodies[2 * j + 1] + 1);
             if (a != b) ties[count++] = (Tie){a < b ? a : b, a < b ? b : a, j};
         }
         qsort(ties, (size_t)count, sizeof *ties, compare_ties);
@@ -130,9 +131,14 @@ static void add_shape(World *world, const SimInput *input, int32_t source, int32
     Body *body = &world->body[carrier];
     Pose frame = body_pose(body);
     Shape *shape = &world->shape[world->shape_count];
-    *shape = (Shape){.body = carrier, .source = source, .radius = b->radius, .first = world->vertex_count,
-                     .friction = b->friction, .elasticity = b->elasticity,
-                     .offset = unplace(frame, vec(b->x, b->y)), .turned = b->angle - body->angle};
+    *shape = (Shape){.body = carrier,
+                     .source = source,
+                     .radius = b->radius,
+                     .first = world->vertex_count,
+                     .friction = b->friction,
+                     .elasticity = b->elasticity,
+                     .offset = unplace(frame, vec(b->x, b->y)),
+                     .turned = b->angle - body->angle};
     Vec *out = &world->vertex[world->vertex_count];
     Pose local = pose(shape->offset, shape->turned);
     if (b->radius > 0) {
@@ -180,8 +186,10 @@ bool world_collides(const World *world, int32_t shape_a, int32_t shape_b) {
     int32_t low = 0, high = world->apart_count;
     while (low < high) {
         int32_t middle = (low + high) / 2;
-        if (world->apart[middle] < key) low = middle + 1;
-        else high = middle;
+        if (world->apart[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
     }
     return low == world->apart_count || world->apart[low] != key;
 }
@@ -242,7 +250,8 @@ int world_create(World *world, const SimInput *input) {
     int32_t *group_size = malloc((n + 1) * sizeof *group_size);
     Tie *ties = malloc((joints + 1) * sizeof *ties);
     int status = SIM_OUT_OF_MEMORY;
-    if (!world->body || !world->shape || !world->vertex || !world->side || !world->joint || !world->source_shape) goto out;
+    if (!world->body || !world->shape || !world->vertex || !world->side || !world->joint || !world->source_shape)
+        goto out;
     if (!parent || !member || !group_size || !ties) goto out;
     double size = 1e-9;
     for (int32_t i = 0; i < input->body_count; i++) {

@@ -25,10 +25,10 @@ typedef struct Body {
     double angle;
     Vec velocity;
     double spin;
-    double mass, moment;                  /* infinite for the background */
-    double inverse_mass, inverse_moment;  /* 0 for the background */
-    double reach;                         /* radius about the centre of mass that holds all its shapes */
-    int32_t first_shape, shape_count;     /* into World.shape */
+    double mass, moment;                 /* infinite for the background */
+    double inverse_mass, inverse_moment; /* 0 for the background */
+    double reach;                        /* radius about the centre of mass that holds all its shapes */
+    int32_t first_shape, shape_count;    /* into World.shape */
     Mode mode;
 } Body;
 
@@ -40,15 +40,15 @@ typedef struct Side {
 } Side;
 
 typedef struct Shape {
-    int32_t body;    /* that carries it */
-    int32_t source;  /* index among the input's bodies */
-    Vec offset;      /* of the source's centre of mass in the body's frame */
-    double turned;   /* the source's angle in the body's frame */
-    double radius;   /* > 0: a circle about vertex[first]; 0: a polygon */
-    int32_t first, count; /* into World.vertex: in the body's frame, counter-clockwise */
+    int32_t body;                     /* that carries it */
+    int32_t source;                   /* index among the input's bodies */
+    Vec offset;                       /* of the source's centre of mass in the body's frame */
+    double turned;                    /* the source's angle in the body's frame */
+    double radius;                    /* > 0: a circle about vertex[first]; 0: a polygon */
+    int32_t first, count;             /* into World.vertex: in the body's frame, counter-clockwise */
     int32_t first_piece, piece_count; /* into World.piece */
-    Vec centre;      /* of a disk that holds it, in the body's frame */
-    double reach;    /* that disk's radius */
+    Vec centre;                       /* of a disk that holds it, in the body's frame */
+    double reach;                     /* that disk's radius */
     double friction, elasticity;
 } Shape;
 
@@ -60,25 +60,25 @@ typedef struct Piece {
 } Piece;
 
 typedef struct Joint {
-    int32_t a, b;            /* bodies */
-    Vec local_a, local_b;    /* the pivot in their frames */
+    int32_t a, b;         /* bodies */
+    Vec local_a, local_b; /* the pivot in their frames */
 } Joint;
 
 typedef struct World {
     Vec gravity;
     int32_t body_count, shape_count, vertex_count, joint_count, piece_count, piece_vertex_count, source_count;
     Body *body;
-    Shape *shape;            /* grouped by body */
+    Shape *shape; /* grouped by body */
     Vec *vertex;
-    Side *side;              /* of every vertex */
-    Piece *piece;            /* made by world_decompose */
+    Side *side;   /* of every vertex */
+    Piece *piece; /* made by world_decompose */
     Vec *piece_vertex;
-    int32_t *piece_corner;   /* by piece vertex: which one of World.vertex it is */
-    Joint *joint;            /* without those inside a merged body */
-    int32_t *source_shape;   /* the shape of each input body */
-    uint64_t *apart;         /* sorted keys of the pairs of shapes that do not collide: joined, or let overlap */
+    int32_t *piece_corner; /* by piece vertex: which one of World.vertex it is */
+    Joint *joint;          /* without those inside a merged body */
+    int32_t *source_shape; /* the shape of each input body */
+    uint64_t *apart;       /* sorted keys of the pairs of shapes that do not collide: joined, or let overlap */
     int32_t apart_count, apart_capacity;
-    double size;             /* a length of the scene's order, for tolerances that scale with rounding [m] */
+    double size; /* a length of the scene's order, for tolerances that scale with rounding [m] */
     SimProfile profile;
     const char *error;
 } World;

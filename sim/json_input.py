@@ -1,0 +1,85 @@
+"""JSON that people and programs write, and errors that say where it is wrong."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from typing import Any
+
+import msgspec
+
+__all__ = ["InputError", "from_msgspec", "kind_of_value", "parse_json"]
+
+MAX_BYTES = 16 << 20  # a scene of 50,000 bodies
+
+
+class InputError(ValueError):
+    """Input that cannot be used: where, what is wrong, and what to do about it.
+
+    Attributes:
+        path: the element, as ``bodies[3].position[0]`` or ``line 3 column 5``; empty for the whole input.
+        problem: what is wrong there, in a few words.
+        hint: what to do; may be empty.
+    """
+
+    def __init__(self, path: str, problem: str, hint: str = "") -> None:
+        super().__init__(f"{path}: {problem}" if path else problem)
+        self.path, self.problem, self.hint = path, problem, hint
+
+
+def parse_json(data: bytes | str, max_bytes: int = MAX_BYTES) -> Any:
+    """JSON to objects. Raises InputError with line and column for what is not JSON, or when it is too long.
+
+    NaN and Infinity are no JSON, but programs write them: they are let through here, so that the check that
+    follows can name the element that has one.
+    """
+    if len(data) > max_bytes:
+        raise InputError("", f"{len(data) / 1e6:.0f} MB of JSON; at most {max_bytes / 1e6:.0f} MB are taken")
+    if not data.strip():
+        raise InputError("", "the input is empty")
+    try:
+        return msgspec.json.decode(data)
+    except msgspec.DecodeError as e:
+        with contextlib.suppress(ValueError, RecursionError):
+            return json.loads(data)
+        raise _not_json(data, e) from None
+    except RecursionError:
+        raise InputError("", "JSON nested too deeply") from None
+
+
+def _not_json(data: bytes | str, cause: Exception) -> InputError:
+    try:
+        json.loads(data)
+    except json.JSONDecodeError as e:
+        return InputError(f"line {e.lineno} column {e.colno}", f"not JSON: {e.msg[:1].lower()}{e.msg[1:]}")
+    except UnicodeDecodeError as e:
+        return InputError(f"byte {e.start}", "not JSON: not UTF-8 text")
+    except RecursionError:
+        return InputError("", "JSON nested too deeply")
+    except ValueError:
+        pass
+    return InputError("", f"not JSON: {cause}")
+
+
+def from_msgspec(e: msgspec.ValidationError) -> InputError:
+    """msgspec's 'Expected `float`, got `str` - at `$.bodies[0].angle`' as path and problem."""
+    text, _, path = str(e).partition(" - at `")
+    path = path.rstrip("`").removeprefix("$").removeprefix(".")
+    if text.startswith("Object missing required field "):
+        name = text.split("`")[1]
+        return InputError(f"{path}.{name}" if path else name, "missing")
+    return InputError(path, text[:1].lower() + text[1:].replace("`", ""))
+
+
+def kind_of_value(value: Any) -> str:
+    if value is None:
+        return "null"
+    names = {
+        bool: "a boolean",
+        int: "a number",
+        float: "a number",
+        str: "a string",
+        list: "a list",
+        dict: "an object",
+    }
+    return names.get(type(value), type(value).__name__)
