@@ -1,7 +1,7 @@
 """Reference cases: scenes whose motion is known, by a closed form or by an ODE solved to 1e-12.
 
 The truth of a case is a function of the sample times that gives the poses of its moving bodies.  Flight,
-impacts, friction in all its regimes, rolling, pivots and rest are each there alone, so that an error in one can
+impacts, every regime of friction, rolling, pivots and rest are each there alone, so that an error in one can
 be told from an error in another.
 """
 
