@@ -23,6 +23,9 @@ def add_to(commands: argparse._SubParsersAction[Any]) -> None:
         description="Measure the engine, the recognizer or the whole way to a video, in the source folder.",
     )
     p.add_argument("subject", choices=SUBJECTS)
+    p.add_argument(
+        "rest", nargs=argparse.REMAINDER, metavar="...", help="its options; -h after it lists them"
+    )
     p.set_defaults(run=run)
 
 
@@ -35,5 +38,5 @@ def run(options: argparse.Namespace) -> int:
     if str(ROOT) not in sys.path:
         sys.path.insert(0, str(ROOT))
     benchmark = importlib.import_module(f"tests.benchmarks.{options.subject}")
-    status: int = benchmark.main([])
+    status: int = benchmark.main(options.rest)
     return status
