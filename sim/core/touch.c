@@ -54,6 +54,19 @@ static double safe_step(double gap, double rate, double steer) {
     return steer > 0 ? (rate + root) / steer : INFINITY;
 }
 
+/* Whether a's corner sits on b's side from outside: both sides of the corner lead away from b's side, within the slack. */
+static bool leads_away(const World *world, const Feature *f, const Placed *a, Vec normal, const Slack *slack) {
+    const Shape *shape = &world->shape[f->shape_a];
+    if (shape->count == 1) return true;
+    const Vec *v = &world->vertex[shape->first];
+    int32_t n = shape->count;
+    for (int32_t k = 0; k < 2; k++) {
+        Vec to = vsub(v[(f->index_a + (k ? 1 : n - 1)) % n], v[f->index_a]);
+        if (vdot(turn(a->at, to), normal) < -1e-6 * vlength(to) - 4 * slack->gap) return false;
+    }
+    return true;
+}
+
 /* ---------------------------------------------------------------- the search */
 
 typedef struct Search {
@@ -100,9 +113,11 @@ static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, con
         if (!feature_make(s->world, ia, ib, k, &f) || is_closed(s, &f)) continue;
         bool a_first = f.body_a == s->a.body;
         Gap g = feature_gap(&f, a_first ? pa : pb, a_first ? pb : pa);
-        step = fmin(step, feature_step(s->slack, &g, bound,
-                                       f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba)
-                                                 : fmin(bound->steer_ab, bound->steer_ba)));
+        double steer =
+            f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
+        double own = feature_step(s->slack, &g, bound, steer);
+        if (own <= 0 && !leads_away(s->world, &f, a_first ? pa : pb, g.normal, s->slack)) own = 1e-5; /* passing by */
+        step = fmin(step, own);
     }
     return step;
 }
@@ -144,19 +159,6 @@ double first_touch(const World *world, Mover a, Mover b, double from, double to,
 
 /* ---------------------------------------------------------------- touching now */
 
-/* Whether a's corner sits on b's side from outside: both sides of the corner lead away from b's side. */
-static bool leads_away(const World *world, const Feature *f, const Placed *a, Vec normal) {
-    const Shape *shape = &world->shape[f->shape_a];
-    if (shape->count == 1) return true;
-    const Vec *v = &world->vertex[shape->first];
-    int32_t n = shape->count;
-    for (int32_t k = 0; k < 2; k++) {
-        Vec to = vsub(v[(f->index_a + (k ? 1 : n - 1)) % n], v[f->index_a]);
-        if (vdot(turn(a->at, to), normal) < -1e-6 * vlength(to)) return false;
-    }
-    return true;
-}
-
 /* Drop the one of two touches at one point that says nothing new: the same touch seen from both sides, or a corner on
  * a corner, where the side that is approached faster, else the outer one, holds. */
 static bool merge_same_point(Touching *out, int32_t count, const Touching *found, double near) {
@@ -194,7 +196,7 @@ int32_t touching_now(const World *world, int32_t body_a, const State *state_a, i
                 const Placed *point_of = a_first ? &pa : &pb;
                 t.gap = feature_gap(&t.feature, point_of, a_first ? &pb : &pa);
                 if (fabs(t.gap.gap) > 4 * slack->gap || t.gap.gap > slack->gap || t.gap.margin < -slack->gap) continue;
-                if (!leads_away(world, &t.feature, point_of, t.gap.normal)) continue;
+                if (!leads_away(world, &t.feature, point_of, t.gap.normal, slack)) continue;
                 if (count < capacity && !merge_same_point(out, count, &t, 8 * slack->gap)) out[count++] = t;
             }
         }
