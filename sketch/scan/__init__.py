@@ -11,7 +11,7 @@ from sketch.ink import Sketch, Stroke
 from sketch.scan.binding import thin, trace
 from sketch.scan.decode import decode, is_picture
 from sketch.scan.graph import build_graph
-from sketch.scan.page import drop_specks, ink_mask, read_page
+from sketch.scan.page import ink_mask, read_page
 from sketch.scan.rings import find_rings, take_rings
 from sketch.scan.strokes import trace_strokes
 
@@ -48,7 +48,7 @@ def trace_picture(picture: NDArray[Any]) -> list[NDArray[np.float64]]:
         return []
     while True:
         page = read_page(work)
-        mask = drop_specks(ink_mask(page, 6), 12)
+        mask = ink_mask(page, 4)
         skeleton, count = thin(mask)
         if count == 0:
             return []

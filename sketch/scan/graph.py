@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +53,7 @@ class Graph:
         return points if end[1] == 0 else points[::-1]
 
 
-def build_graph(chains: Chains, distance: NDArray[np.float32], pen: float) -> Graph:
+def build_graph(chains: Chains, distance: NDArray[Any], pen: float) -> Graph:
     """The graph of traced chains.
 
     distance: each pixel's distance to the paper, shape (h, w).  pen: the width of the pen [pixels].

@@ -1,4 +1,4 @@
-"""The page: even light, and which pixels are ink."""
+"""The page: where the paper is, even light on it, and which pixels are ink."""
 
 from __future__ import annotations
 
@@ -12,9 +12,15 @@ __all__ = ["Page", "ink_mask", "read_page"]
 
 Image = NDArray[Any]  # uint8
 
+REDUCED = 4  # light is looked at with this many pixels a side made one
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line
+FINGER = 0.015  # likewise, for telling the paper from what lies on it
+TABLE = 0.5  # what is not as bright as this share of the paper is not paper
+MARGIN = REDUCED + 2  # [pixels] along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
-LEAST_CONTRAST = 18  # of 255: paper's own texture stays below
+LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
+FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
+NOTABLE = 0.03  # of the picture's size: pieces smaller than this do not say how dark the ink is
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,66 +28,124 @@ class Page:
     """A page under even light.
 
     Attributes:
-        darkness: 0 is bare paper, 255 is black, shape (h, w).
+        darkness: 0 is bare paper, 255 is black, shape (h, w); 0 off the paper.
         noise: standard deviation of the bare paper's darkness.
-        ink: the darkness that full ink has.
     """
 
     darkness: Image
     noise: float
-    ink: float
 
 
 def read_page(picture: Image) -> Page:
     """Divide the light out of a BGR picture.
 
-    What is darker than its surroundings and narrower than WIDEST_LINE counts as drawn: a closing at a quarter
-    of the resolution takes that away and leaves paper, shadows and the table, each with its own light.
+    What is darker than its surroundings and narrower than WIDEST_LINE counts as drawn: a closing at low
+    resolution takes that away and leaves paper and shadows, each with its own light.
     """
     import cv2
 
     blue, green, red = cv2.split(picture)
     grey = cv2.min(cv2.min(blue, green), red)
     height, width = grey.shape
-    small = cv2.resize(grey, (max(width // 4, 1), max(height // 4, 1)), interpolation=cv2.INTER_AREA)
-    reach = max(int(WIDEST_LINE * (small.shape[0] * small.shape[1]) ** 0.5), 2) * 2 + 1
-    light = cv2.morphologyEx(small, cv2.MORPH_CLOSE, np.ones((reach, reach), np.uint8))
+    size = (max(width // REDUCED, 1), max(height // REDUCED, 1))
+    small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
+    light = _closed(small, WIDEST_LINE)
     # where light changes at an edge its side is known to a small pixel only: taken as on the dark side
     light = cv2.blur(cv2.erode(light, np.ones((3, 3), np.uint8)), (3, 3))
     light = cv2.resize(light, (width, height), interpolation=cv2.INTER_LINEAR)
     darkness = cv2.divide(cv2.subtract(light, grey), np.maximum(light, np.uint8(DIMMEST)), scale=255.0)
-    return _measure(darkness)
+    paper = _paper(small)
+    if paper is not None:
+        paper = cv2.resize(paper, (width, height), interpolation=cv2.INTER_NEAREST)
+        darkness = cv2.min(darkness, paper)
+    # a sheet may end so near the picture's edge that no table is seen beyond
+    for strip in (darkness[:MARGIN], darkness[-MARGIN:], darkness[:, :MARGIN], darkness[:, -MARGIN:]):
+        strip[...] = 0
+    return Page(darkness, _noise(darkness, paper))
 
 
-def _measure(darkness: Image) -> Page:
+def _closed(small: Image, width: float) -> Image:
+    """Without what is dark and narrower than `width`, a share of the picture's size, to either side.
+
+    A strip at the picture's edge goes on outside for all one knows: it is no line.
+    """
     import cv2
 
-    histogram = np.asarray(cv2.calcHist([darkness], [0], None, [256], [0, 256])).ravel()
-    total = np.cumsum(histogram)
-    middle = int(np.searchsorted(total, 0.5 * total[-1]))
-    upper = int(np.searchsorted(total, 0.84 * total[-1]))
-    noise = max(float(upper - middle), 1.0)
-    least = int(max(LEAST_CONTRAST, middle + 5 * noise))
-    tail = np.cumsum(histogram[min(least, 255) :])
-    ink = least + int(np.searchsorted(tail, 0.7 * tail[-1]))
-    return Page(darkness, noise, float(ink))
+    reach = max(int(width * (small.shape[0] * small.shape[1]) ** 0.5), 2)
+    wide = cv2.copyMakeBorder(small, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
+    closed = cv2.morphologyEx(wide, cv2.MORPH_CLOSE, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
+    return np.asarray(closed[reach:-reach, reach:-reach])
+
+
+def _paper(small: Image) -> Image | None:
+    """255 on the sheet and 0 off it, or None where the sheet fills the picture.
+
+    Light changes across a sheet, but not at once: a sheet ends where brightness falls to less than TABLE within
+    a few pixels.  Of the regions that such edges part, the one with the most light is the sheet; the light on
+    it, continued beyond, then tells softer edges too.
+    """
+    import cv2
+
+    bright = _closed(small, FINGER)
+    square = np.ones((5, 5), np.uint8)
+    inner = (cv2.erode(bright, square) >= TABLE * cv2.dilate(bright, square)).astype(np.uint8)
+    if inner.all():
+        return None
+    weight = _brightest_region(inner, bright).astype(np.float32)
+    spread = 0.12 * (small.shape[0] * small.shape[1]) ** 0.5
+    around = cv2.GaussianBlur(sheet * bright, (0, 0), spread) / (
+        cv2.GaussianBlur(sheet, (0, 0), spread) + 1e-3
+    )
+    sheet = _brightest_region(inner & (bright >= TABLE * around), bright)
+    # what the sheet surrounds lies on it: a filled shape, a coin, a blot
+    rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)
+    _, labels = cv2.connectedComponents(rest, connectivity=4)
+    off = (labels == labels[0, 0]).astype(np.uint8)
+    return np.asarray(255 * (1 - cv2.dilate(off, square)[1:-1, 1:-1]), np.uint8)
+
+
+def _brightest_region(mask: Image, bright: Image) -> NDArray[np.bool_]:
+    """The connected region of a mask that has the most light in all."""
+    import cv2
+
+    count, labels = cv2.connectedComponents(mask, connectivity=4)
+    light = np.bincount(labels.ravel(), bright.ravel(), minlength=count)
+    light[0] = -1
+    return np.asarray(labels == int(np.argmax(light)))
+
+
+def _noise(darkness: Image, paper: Image | None) -> float:
+    import cv2
+
+    histogram = np.asarray(cv2.calcHist([darkness], [0], paper, [256], [0, 256])).ravel()
+    # light is the brightest around, so that bare paper is darker by as much as it is uneven
+    share = np.cumsum(histogram)
+    return max(float(np.searchsorted(share, 0.6 * share[-1])) / 2, 1.0)
 
 
 def ink_mask(page: Page, reach: int) -> Image:
-    """The pixels that are ink, 1, shape (h, w): half as dark as the darkest within `reach` pixels."""
+    """The pixels that are ink, 1, shape (h, w).
+
+    A pixel of ink is at least half as dark as the darkest within `reach` pixels, which finds a line's edges
+    however dark it is; of the pieces that those make, the ones count that are about as dark as the darkest.
+    """
     import cv2
 
     kernel = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
     half = cv2.dilate(page.darkness, kernel) // 2
-    floor = max(LEAST_CONTRAST, 4 * page.noise, 0.35 * page.ink)
-    return np.asarray(page.darkness > np.maximum(half, np.uint8(min(floor, 254))), np.uint8)
-
-
-def drop_specks(mask: Image, least: float) -> Any:
-    """Without the pieces of fewer than `least` pixels."""
-    import cv2
-
+    floor = np.uint8(min(max(LEAST_CONTRAST, 5 * page.noise), 254))
+    mask = np.asarray(page.darkness > np.maximum(half, floor), np.uint8)
     count, labels, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
-    keep = (stats[:, cv2.CC_STAT_AREA] >= least).astype(np.uint8)
-    keep[0] = 0
-    return keep[labels] if count > 1 else mask
+    if count == 1:
+        return mask
+    inked = np.flatnonzero(mask)
+    total = np.bincount(labels.ravel()[inked], page.darkness.ravel()[inked], minlength=count)
+    area = stats[:, cv2.CC_STAT_AREA]
+    strength = total / area
+    span = np.hypot(stats[:, cv2.CC_STAT_WIDTH], stats[:, cv2.CC_STAT_HEIGHT])
+    notable = span >= NOTABLE * (mask.shape[0] * mask.shape[1]) ** 0.5
+    notable[0] = False
+    full = strength[notable].max() if notable.any() else strength[1:].max()
+    keep = (strength >= FAINT * full) & (span >= 2 * reach)
+    keep[0] = False
+    return np.asarray(keep.astype(np.uint8)[labels])
