@@ -56,40 +56,74 @@ static int32_t leaving_row(const Tableau *tab, int32_t column) {
     return best;
 }
 
-static void fill(Tableau *tab, const double *M, const double *q) {
+/* The tableau of w = (M + soften I) z + q - soften near. */
+static void fill(Tableau *tab, const double *M, const double *q, double soften, const double *near) {
     int32_t n = tab->n;
     memset(tab->t, 0, lcp_work(n) * sizeof *tab->t);
     for (int32_t i = 0; i < n; i++) {
         double *p = row(tab, i);
         p[i] = 1;
         for (int32_t j = 0; j < n; j++) p[n + j] = -M[(size_t)i * (size_t)n + (size_t)j];
+        p[n + i] -= soften;
         p[2 * n] = -1;
-        p[2 * n + 1] = q[i];
+        p[2 * n + 1] = q[i] - soften * near[i];
         tab->basis[i] = i;
     }
 }
 
+/* Follow Lemke's path from the tableau to its end; false where that is a ray, or too far. */
+static bool follow(Tableau *tab, double *z) {
+    int32_t n = tab->n, entering = 2 * n, r = -1;
+    for (int32_t i = 0; i < n; i++)
+        if (row(tab, i)[2 * n + 1] < 0 && (r < 0 || row(tab, i)[2 * n + 1] < row(tab, r)[2 * n + 1])) r = i;
+    for (int32_t k = 0; r >= 0 && k < 20 * n + 40; k++) {
+        int32_t leaving = tab->basis[r];
+        pivot(tab, r, entering);
+        if (leaving == 2 * n) break;
+        entering = leaving < n ? leaving + n : leaving - n; /* the complement of what left */
+        r = leaving_row(tab, entering);
+        if (r < 0) return false;
+    }
+    for (int32_t i = 0; i < n; i++) z[i] = 0;
+    for (int32_t i = 0; i < n; i++) {
+        if (tab->basis[i] == 2 * n) return false;
+        if (tab->basis[i] >= n) z[tab->basis[i] - n] = fmax(row(tab, i)[2 * n + 1], 0);
+    }
+    return true;
+}
+
+/* Whether z solves the problem to `allowed`, of its size. */
+static bool is_solution(int32_t n, const double *M, const double *q, const double *z, double allowed) {
+    double size = 0, most = 0;
+    for (int32_t i = 0; i < n; i++) size = fmax(size, fabs(q[i])), most = fmax(most, z[i]);
+    for (int32_t i = 0; i < n; i++) {
+        double w = q[i];
+        for (int32_t j = 0; j < n; j++) w += M[(size_t)i * (size_t)n + (size_t)j] * z[j];
+        if (w < -allowed * size || (w > allowed * size && z[i] > allowed * most)) return false;
+    }
+    return true;
+}
+
 bool lcp_solve(int32_t n, const double *M, const double *q, double *z, double *work, int32_t *basis) {
-    int32_t worst = -1;
+    bool trivial = true;
     for (int32_t i = 0; i < n; i++) {
         z[i] = 0;
-        if (q[i] < 0 && (worst < 0 || q[i] < q[worst])) worst = i;
+        trivial = trivial && q[i] >= 0;
     }
-    if (worst < 0) return true;
+    if (trivial) return true;
     Tableau tab = {n, 2 * n + 2, work, basis};
-    fill(&tab, M, q);
-    int32_t entering = 2 * n, r = worst;
-    for (int32_t k = 0; k < 40 * n + 40; k++) {
-        int32_t leaving = tab.basis[r];
-        pivot(&tab, r, entering);
-        if (leaving == 2 * n) {
-            for (int32_t i = 0; i < n; i++)
-                if (tab.basis[i] >= n && tab.basis[i] < 2 * n) z[tab.basis[i] - n] = fmax(row(&tab, i)[2 * n + 1], 0);
-            return true;
+    fill(&tab, M, q, 0, z);
+    if (follow(&tab, z) && is_solution(n, M, q, z, 1e-9)) return true;
+    /* Redundant contacts can leave pivots that are rounding alone.  A little softness gives them a size; solving again
+     * about the solution found takes its effect away (proximal point method). */
+    for (double soften = 1e-8; soften < 1e-5; soften *= 10) {
+        for (int32_t i = 0; i < n; i++) z[i] = 0;
+        bool found = true;
+        for (int pass = 0; pass < 2 && found; pass++) {
+            fill(&tab, M, q, soften, z);
+            found = follow(&tab, z);
         }
-        entering = leaving < n ? leaving + n : leaving - n; /* the complement of what left */
-        r = leaving_row(&tab, entering);
-        if (r < 0) return false;
+        if (found && is_solution(n, M, q, z, 10 * soften)) return true;
     }
     return false;
 }
