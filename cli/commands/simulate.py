@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["add_to"]
 
-ENDINGS = (".mp4", ".png", ".npz", ".json", ".csv")
+ENDINGS = (".mp4", ".html", ".png", ".npz", ".json", ".csv")
 DATA = {".npz": "to_npz", ".json": "to_json", ".csv": "to_csv"}
 MAX_SAMPLES = 1_000_000  # of the motion; a day at 10 fps
 GRAVITY = 9.81  # [m/s²]
@@ -26,6 +26,7 @@ DESCRIPTION = "Run a drawing or a scene, and write what happens."
 EPILOG = """\
 endings of OUT:
   .mp4             video (H.264)
+  .html            a page to play it in, with graphs
   .png             one picture of the whole motion
   .npz .json .csv  the motion as numbers; - is JSON on standard output
 
@@ -128,7 +129,14 @@ def _write(
 
     scene = loaded.scene
     camera = fit(scene, options.size, motion)
-    figure = Figure(scene, camera, CLEAN, loaded.recognition.sketch if loaded.recognition else None)
+    sketch = loaded.recognition.sketch if loaded.recognition else None
+    figure = Figure(scene, camera, CLEAN, sketch)
+    if kind == ".html":
+        from cli.render.page import page
+
+        title = Path(options.input).stem if options.input != STDOUT else "sketch"
+        files.write(target, page(figure, motion, title, sketch))
+        return
     if kind == ".png":
         from cli.render.still import png, strobe
 

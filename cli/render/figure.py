@@ -20,7 +20,7 @@ from sim.scene import Body, Circle, Joint, Scene
 if TYPE_CHECKING:
     from sketch.ink import Sketch
 
-__all__ = ["Figure", "Part"]
+__all__ = ["Figure", "Part", "length_label", "round_length"]
 
 Array = NDArray[np.float64]
 
@@ -75,8 +75,7 @@ class Figure:
     def body(self, k: int) -> list[Part]:
         """Outline, filling and, on a disc, the mark that shows it turning."""
         body = self.scene.bodies[k]
-        edge = mix(self.colors[k], self.style.ink, 0.62)
-        filling = mix(self.colors[k], self.style.paper, 0.12)
+        filling, edge = self.body_paints(k)
         if isinstance(body.shape, Circle):
             return self._disc_parts(k, body.shape.radius, edge, filling)
         v = np.array(body.shape.vertices)
@@ -84,6 +83,11 @@ class Figure:
         outer, inner = inset(v, bloom), inset(v, bloom + line)
         convex = is_convex(v)
         return [Part(k, outer, edge, convex=convex), Part(k, inner, filling, convex=convex)]
+
+    def body_paints(self, k: int) -> tuple[RGB, RGB]:
+        """The colours of a body's filling and outline; anchored bodies are paler."""
+        pale = 0.72 if self.scene.bodies[k].anchored else 0.12
+        return mix(self.colors[k], self.style.paper, pale), mix(self.colors[k], self.style.ink, 0.62)
 
     def _disc_parts(self, k: int, radius: float, edge: RGB, filling: RGB) -> list[Part]:
         middle, pixels = np.zeros((1, 2)), radius * self.camera.scale
@@ -219,13 +223,12 @@ class Figure:
 
     def _draw_anchored(self, canvas: Canvas, k: int, body: Body) -> None:
         """A pale body with the hatching that engineers draw for what is fixed."""
-        color, paper = self.colors[k], self.style.paper
+        filling, edge = self.body_paints(k)
         outline = self.camera.pixels(np.array(body.outline()))
-        edge = mix(color, self.style.ink, 0.6)
         canvas.polygon(fixed(inset(outline, BLOOM)), edge)
         inner = fixed(inset(outline, BLOOM + self.line))
-        canvas.polygon(inner, mix(color, paper, 0.72))
-        self._hatch(canvas, inner, mix(color, self.style.ink, 0.12))
+        canvas.polygon(inner, filling)
+        self._hatch(canvas, inner, mix(self.colors[k], self.style.ink, 0.12))
 
     def _hatch(self, canvas: Canvas, outline: Points, color: RGB) -> None:
         """Stripes at 45 degrees within an outline (fixed-point)."""
@@ -275,7 +278,7 @@ class Figure:
         self._line(canvas, np.array([left, bottom]), np.array([right, bottom]), self.line, ink)
         for x in (left, right):
             self._line(canvas, np.array([x, bottom - 5 * u]), np.array([x, bottom + 5 * u]), self.line, ink)
-        self._write(canvas, _length(metres), (left, bottom - 32 * u), 14)
+        self._write(canvas, length_label(metres), (left, bottom - 32 * u), 14)
 
     def _draw_gravity(self, canvas: Canvas) -> None:
         """The arrow of gravity in the upper right corner, or that there is none."""
@@ -314,7 +317,7 @@ def round_length(metres: float) -> float:
     return next(n * power for n in (5, 2, 1) if n * power <= metres * (1 + 1e-9))
 
 
-def _length(metres: float) -> str:
+def length_label(metres: float) -> str:
     for unit, size in (("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)):
         if metres >= size * (1 - 1e-9):
             return f"{metres / size:g} {unit}"

@@ -85,7 +85,8 @@ def _label_at(reading: Reading, strokes: list[Stroke]) -> Array:
     """The topmost point of the outline above its middle; of the ink where there is no outline."""
     v = reading.outline
     if reading.kind == "gravity" and len(v):
-        return v[0]  # the tail
+        tail: Array = v[0]
+        return tail
     if len(v) < 2:
         v = np.concatenate([strokes[k].points for k in reading.strokes])
     middle = float(v[:, 0].min() + v[:, 0].max()) / 2

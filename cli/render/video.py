@@ -24,7 +24,7 @@ __all__ = ["Sheet", "changes", "clock", "drawn", "frame_count", "write_video"]
 # Measured at 1280x720 in flat colours, ms a frame and kB for 10 s: ultrafast crf 20 1.4 and 1200, qp 20 1.0
 # and 850, superfast crf 20 2.4 and 540, veryfast crf 20 3.2 and 290.  A fixed quantizer needs no look ahead.
 X264 = {"preset": "ultrafast", "qp": "21"}
-THREADS = 1
+THREADS = 2
 PIXELS = "nv12"  # yuv420p as x264 keeps it inside; two planes to draw on instead of three
 
 CHUNK = 64  # frames whose poses are computed at once: memory does not grow with the length

@@ -1,0 +1,115 @@
+"""The .html output: one file with the motion and a player of it, without network or framework."""
+
+from __future__ import annotations
+
+import base64
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+
+from cli.render.figure import Figure, length_label, round_length
+from cli.render.style import RGB, mix
+from sim.scene import Circle, Joint
+
+if TYPE_CHECKING:
+    from sim.trajectory import Trajectory
+    from sketch.ink import Sketch
+
+__all__ = ["page"]
+
+PLAYER = Path(__file__).with_name("player")
+SCRIPTS = ("recording", "stage", "graphs", "controls")
+
+
+def page(figure: Figure, motion: Trajectory, title: str, sketch: Sketch | None = None) -> bytes:
+    """The whole page as UTF-8."""
+    # Within a script element only these two could end it or start a comment.
+    data = msgspec.json.encode(_data(figure, motion, sketch)).decode().replace("<", "\\u003c")
+    parts = {
+        "title": title.replace("&", "&amp;").replace("<", "&lt;"),
+        "style": (PLAYER / "player.css").read_text("utf-8").strip(),
+        "script": "\n".join((PLAYER / f"{name}.js").read_text("utf-8") for name in SCRIPTS).strip(),
+        "data": data,
+    }
+    html = (PLAYER / "player.html").read_text("utf-8")
+    before, *rest = html.split("{{")
+    out = [before]
+    for piece in rest:
+        name, _, after = piece.partition("}}")
+        out += [parts[name], after]
+    return "".join(out).encode()
+
+
+def _data(figure: Figure, motion: Trajectory, sketch: Sketch | None) -> dict[str, Any]:
+    scene, camera, style = figure.scene, figure.camera, figure.style
+    samples = np.concatenate(
+        [motion.positions, motion.angles[..., None], motion.velocities, motion.angular_velocities[..., None]],
+        axis=2,
+    )
+    interval = float(motion.times[1] - motion.times[0]) if len(motion) > 1 else 1.0
+    bar = round_length(0.2 * camera.size[0] / camera.scale)
+    return {
+        "fps": 1 / interval,
+        "count": len(motion),
+        "gravity": list(scene.gravity),
+        "size": list(camera.size),
+        "scale": camera.scale,
+        "corner": list(camera.corner),
+        "bar": {"metres": bar, "label": length_label(bar)},
+        "paper": _css(style.paper),
+        "dark": _css(style.ink),
+        "drawn": _css(style.drawn),
+        "bodies": [_body(figure, k) for k in range(len(scene.bodies))],
+        "pivots": [_pivot(figure, joint) for joint in scene.joints],
+        "ink": _ink(figure, sketch),
+        "motion": base64.b64encode(samples.astype("<f4").tobytes()).decode(),
+    }
+
+
+def _body(figure: Figure, k: int) -> dict[str, Any]:
+    body = figure.scene.bodies[k]
+    mass, moment = body.mass_properties()
+    fill, edge = figure.body_paints(k)
+    round_ = isinstance(body.shape, Circle)
+    return {
+        "id": body.id,
+        "anchored": body.anchored,
+        "angle": body.angle,
+        "radius": body.shape.radius if isinstance(body.shape, Circle) else 0,
+        "outline": [] if round_ else [list(p) for p in body.shape.vertices],  # type: ignore[union-attr]
+        "mass": mass,
+        "moment": moment,
+        "fill": _css(fill),
+        "edge": _css(edge),
+        "stripes": _css(mix(figure.colors[k], figure.style.ink, 0.12)),
+    }
+
+
+def _pivot(figure: Figure, joint: Joint) -> dict[str, Any]:
+    """The body that carries the pivot, and the point in its frame; on the page where no body moves."""
+    for name in joint.bodies:
+        if name is not None and not figure.scene.bodies[figure.index[name]].anchored:
+            body = figure.scene.bodies[figure.index[name]]
+            c, s = math.cos(body.angle), math.sin(body.angle)
+            x, y = (joint.position[i] - body.position[i] for i in (0, 1))
+            at, k = [c * x + s * y, c * y - s * x], figure.index[name]
+            break
+    else:
+        at, k = list(joint.position), -1
+    return {"body": k, "at": at, "world": list(joint.position), "ground": None in joint.bodies}
+
+
+def _ink(figure: Figure, sketch: Sketch | None) -> list[list[list[float]]]:
+    """The person's strokes in metres, to a millimetre of a page ten metres wide."""
+    view = figure.scene.view
+    if sketch is None or view is None:
+        return []
+    world = (stroke.points * (1, -1) / view.pixels_per_metre for stroke in sketch.strokes)
+    return [np.round(points, 3).tolist() for points in world]
+
+
+def _css(color: RGB) -> str:
+    return "#{:02x}{:02x}{:02x}".format(*color)
