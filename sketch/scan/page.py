@@ -80,7 +80,7 @@ def _closed(small: Image, width: float) -> Image:
 def _paper(small: Image) -> Image | None:
     """255 on the sheet and 0 off it, or None where the sheet fills the picture.
 
-    Light changes across a sheet, but not at once: a sheet ends where brightness falls to less than TABLE within
+    Light changes across a sheet, but not at once: a sheet ends where brightness falls below TABLE within
     a few pixels.  Of the regions that such edges part, the one with the most light is the sheet; the light on
     it, continued beyond, then tells softer edges too.
     """
@@ -93,8 +93,8 @@ def _paper(small: Image) -> Image | None:
         return None
     weight = _brightest_region(inner, bright).astype(np.float32)
     spread = 0.12 * (small.shape[0] * small.shape[1]) ** 0.5
-    around = cv2.GaussianBlur(sheet * bright, (0, 0), spread) / (
-        cv2.GaussianBlur(sheet, (0, 0), spread) + 1e-3
+    around = cv2.GaussianBlur(weight * bright, (0, 0), spread) / (
+        cv2.GaussianBlur(weight, (0, 0), spread) + 1e-3
     )
     sheet = _brightest_region(inner & (bright >= TABLE * around), bright)
     # what the sheet surrounds lies on it: a filled shape, a coin, a blot

@@ -66,3 +66,16 @@ def test_a_picture_without_ink_gives_no_strokes_and_says_so(shape: tuple[int, in
     sketch = read_picture(encoded(np.full((*shape, 3), level, np.uint8)))
     assert sketch.strokes == []
     assert any("no ink" in note for note in sketch.notes)
+
+
+def test_a_sheet_on_a_dark_table_gives_the_ink_on_it_and_no_outline_of_the_sheet() -> None:
+    picture = np.full((600, 800, 3), 60, np.uint8)
+    sheet = np.array([[60, 40], [760, 70], [730, 570], [30, 540]])
+    cv2.fillPoly(picture, [sheet], (210, 225, 230), cv2.LINE_AA)
+    cv2.rectangle(picture, (300, 200), (480, 330), (90, 60, 40), 4, cv2.LINE_AA)
+    light = np.linspace(0.6, 1.1, 800)[None, :, None]
+    noise = np.random.default_rng(3).normal(0, 3, picture.shape)
+    sketch = read_picture(encoded(np.clip(picture * light + noise, 0, 255).astype(np.uint8), ".jpg"))
+    points = np.concatenate([stroke.points for stroke in sketch.strokes])
+    assert points.min(axis=0) == pytest.approx([300, 200], abs=2)
+    assert points.max(axis=0) == pytest.approx([480, 330], abs=2)
