@@ -3,10 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LOCAL 0.02        /* the part of the tolerance that one step may err by */
-#define RELAX 1e-10       /* makes redundant rows solvable; refinement takes its effect away again */
-#define DECISIVE 1e-9     /* how far past its limit a force is when its event is taken, of the forces about */
-#define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
+#define LOCAL 0.02            /* the part of the tolerance that one step may err by */
+#define RELAX 1e-10           /* makes redundant rows solvable; refinement takes its effect away again */
+#define RELAX_PROJECTION 1e-6 /* the same for projection, which is iterated anyway */
+#define FARTHEST 100.0        /* times the error that is corrected: a correction goes no farther */
+#define DECISIVE 1e-9         /* how far past its limit a force is when its event is taken, of the forces about */
+#define VELOCITY_TIME 1.0     /* an error in velocity counts as what it moves a body by in this time [s] */
 
 int smooth_create(Smooth *s, const World *world, double tolerance, Slack slack) {
     *s = (Smooth){.capacity = world->body_count, .tolerance = tolerance, .slack = slack};
@@ -93,7 +95,7 @@ static double softness(const System *system, int32_t row, double most) {
 }
 
 /* LU without pivoting within the profile: L below with its diagonal, U above with ones on its diagonal. */
-static void factor(Smooth *s, const System *system) {
+static void factor(Smooth *s, const System *system, double relax) {
     int32_t n = s->active_count;
     double *A = s->matrix, most = 0;
     for (int32_t k = 0; k < system->contact_count; k++) most = fmax(most, system->contact[k].force);
@@ -111,7 +113,7 @@ static void factor(Smooth *s, const System *system) {
             A[j * n + i] = upper / A[j * n + j];
         }
         double diagonal = row_coupling(system, ri, ri);
-        diagonal += RELAX * fabs(diagonal) * softness(system, s->active[i], most);
+        diagonal += relax * fabs(diagonal) * softness(system, s->active[i], most);
         for (int32_t k = s->first[i]; k < i; k++) diagonal -= A[i * n + k] * A[k * n + i];
         A[i * n + i] = diagonal;
     }
@@ -162,7 +164,7 @@ static int accelerate(Smooth *s, System *system, double *out) {
     s->evals += 1;
     s->rows += s->active_count;
     memset(s->force, 0, (size_t)s->active_count * sizeof *s->force);
-    factor(s, system);
+    factor(s, system, RELAX);
     for (int pass = 0; pass < 2; pass++) { /* the second pass takes away what RELAX left */
         for (int32_t i = 0; i < s->active_count; i++) s->residual[i] = -row_of(&system->row[s->active[i]], out);
         substitute(s);
@@ -180,6 +182,18 @@ static int accelerate(Smooth *s, System *system, double *out) {
         c->along_force = s->rank[normal + 1] >= 0 ? s->force[s->rank[normal + 1]] : -c->slide * c->friction * c->force;
     }
     return SIM_OK;
+}
+
+static void load(System *system, const double *y) {
+    for (int32_t i = 0; i < system->count; i++, y += 6)
+        system->state[i] = (State){vec(y[0], y[1]), y[2], vec(y[3], y[4]), y[5]};
+}
+
+static void store(const System *system, double *y) {
+    for (int32_t i = 0; i < system->count; i++, y += 6) {
+        const State *s = &system->state[i];
+        y[0] = s->p.x, y[1] = s->p.y, y[2] = s->angle, y[3] = s->v.x, y[4] = s->v.y, y[5] = s->spin;
+    }
 }
 
 /* ---------------------------------------------------------------- projection */
@@ -210,8 +224,24 @@ static void move(const System *system, int32_t i, const double *f, double by) {
     state->angle += by * body->inverse_moment * f[2];
 }
 
-int smooth_project(Smooth *s, System *system) {
-    for (int pass = 0; pass < 3; pass++) { /* Newton's method: the first pass leaves the square of the error */
+/* Rows that nearly say the same, and differ by rounding, would be met by running far away: no correction may be much larger
+ * than what it corrects.  Those that are stay as they were. */
+static void keep_if_small(System *system, const double *before, double worst) {
+    for (int32_t i = 0; i < system->count; i++, before += 6) {
+        const State *s = &system->state[i];
+        double reach = system->world->body[system->member[i]].reach, most = FARTHEST * worst;
+        bool near = hypot(s->p.x - before[0], s->p.y - before[1]) + reach * fabs(s->angle - before[2]) <= most;
+        bool slow = hypot(s->v.x - before[3], s->v.y - before[4]) + reach * fabs(s->spin - before[5]) <= most;
+        if (!near || !slow)
+            system->state[i] = (State){vec(before[0], before[1]), before[2], vec(before[3], before[4]), before[5]};
+    }
+}
+
+/* Newton's method on the positions: the first pass leaves the square of the error. */
+static int project_positions(Smooth *s, System *system) {
+    store(system, s->start);
+    double first = 0;
+    for (int pass = 0; pass < 3; pass++) {
         int status = system_place(system);
         if (status != SIM_OK) return status;
         double worst = 0;
@@ -219,8 +249,9 @@ int smooth_project(Smooth *s, System *system) {
             s->residual[i] = -position_error(system, s->active[i]);
             worst = fmax(worst, fabs(s->residual[i]));
         }
+        if (pass == 0) first = worst;
         if (worst <= s->slack.root) break;
-        factor(s, system);
+        factor(s, system, RELAX_PROJECTION);
         substitute(s);
         for (int32_t i = 0; i < s->active_count; i++) {
             const Row *row = &system->row[s->active[i]];
@@ -228,12 +259,21 @@ int smooth_project(Smooth *s, System *system) {
             move(system, row->b, row->jb, s->residual[i]);
         }
     }
+    keep_if_small(system, s->start, first);
+    return SIM_OK;
+}
+
+static int project_velocities(Smooth *s, System *system) {
     int status = system_place(system);
-    if (status != SIM_OK || s->active_count == 0) return status;
-    factor(s, system);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int32_t i = 0; i < s->active_count; i++)
+    if (status != SIM_OK) return status;
+    store(system, s->start);
+    double first = 0;
+    factor(s, system, RELAX_PROJECTION);
+    for (int pass = 0; pass < 3; pass++) {
+        for (int32_t i = 0; i < s->active_count; i++) {
             s->residual[i] = -row_speed(&system->row[s->active[i]], system->state);
+            if (pass == 0) first = fmax(first, fabs(s->residual[i]));
+        }
         substitute(s);
         for (int32_t i = 0; i < s->active_count; i++) {
             Row plain = system->row[s->active[i]];
@@ -242,22 +282,17 @@ int smooth_project(Smooth *s, System *system) {
             row_push(system, &plain, s->residual[i]);
         }
     }
+    keep_if_small(system, s->start, first);
     return SIM_OK;
 }
 
+int smooth_project(Smooth *s, System *system) {
+    if (s->active_count == 0) return SIM_OK;
+    int status = project_positions(s, system);
+    return status == SIM_OK ? project_velocities(s, system) : status;
+}
+
 /* ---------------------------------------------------------------- the step */
-
-static void load(System *system, const double *y) {
-    for (int32_t i = 0; i < system->count; i++, y += 6)
-        system->state[i] = (State){vec(y[0], y[1]), y[2], vec(y[3], y[4]), y[5]};
-}
-
-static void store(const System *system, double *y) {
-    for (int32_t i = 0; i < system->count; i++, y += 6) {
-        const State *s = &system->state[i];
-        y[0] = s->p.x, y[1] = s->p.y, y[2] = s->angle, y[3] = s->v.x, y[4] = s->v.y, y[5] = s->spin;
-    }
-}
 
 /* dy/dt at y. */
 static int derive(Smooth *s, System *system, const double *y, double *k) {
