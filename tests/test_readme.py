@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from cli.commands.simulate import ENDINGS
 from cli.main import build_parser, main
 from sim import Scene
 from sketch import load_sketch
@@ -84,6 +85,11 @@ def test_the_options_of_simulate_are_all_listed(capsys: pytest.CaptureFixture[st
     options = set(re.findall(r"(?<![\w-])--[a-z-]+", capsys.readouterr().out)) - {"--help"}
     table = TEXT[TEXT.index("| `simulate` |") :]
     assert {option for option in options if f"| `{option}" not in table} == set()
+
+
+def test_the_endings_of_outputs_are_all_listed() -> None:
+    (row,) = re.findall(r"^\| `-o OUT` \|(.*)$", TEXT, re.M)
+    assert set(re.findall(r"`(\.\w+)`", row)) == set(ENDINGS)
 
 
 def test_the_subcommands_are_all_named() -> None:
