@@ -9,10 +9,13 @@ int sweep_create(Sweep *sweep, int32_t count) {
     size_t n = (size_t)count + 1;
     *sweep = (Sweep){.count = count, .pair_capacity = 4 * count + 64};
     sweep->order = malloc(n * sizeof *sweep->order);
-    sweep->low = malloc(n * sizeof *sweep->low);
-    sweep->high = malloc(n * sizeof *sweep->high);
+    sweep->low = malloc(4 * n * sizeof *sweep->low);
+    sweep->moving = malloc(n * sizeof *sweep->moving);
     sweep->pair = malloc((size_t)sweep->pair_capacity * sizeof *sweep->pair);
-    if (!sweep->order || !sweep->low || !sweep->high || !sweep->pair) return SIM_OUT_OF_MEMORY;
+    if (!sweep->order || !sweep->low || !sweep->moving || !sweep->pair) return SIM_OUT_OF_MEMORY;
+    sweep->high = sweep->low + n;
+    sweep->across_low = sweep->low + 2 * n;
+    sweep->across_high = sweep->low + 3 * n;
     for (int32_t i = 0; i < count; i++) sweep->order[i] = i;
     return SIM_OK;
 }
@@ -20,7 +23,7 @@ int sweep_create(Sweep *sweep, int32_t count) {
 void sweep_destroy(Sweep *sweep) {
     free(sweep->order);
     free(sweep->low);
-    free(sweep->high);
+    free(sweep->moving);
     free(sweep->pair);
 }
 
@@ -37,7 +40,7 @@ static bool spread_in_y(const Sweep *sweep, const Box *box, const bool *moving) 
     return square.y * n - sum.y * sum.y > square.x * n - sum.x * sum.x;
 }
 
-static void sort(Sweep *sweep, const Box *box, bool in_y) {
+static void sort(Sweep *sweep, const Box *box, const bool *moving, bool in_y) {
     for (int32_t k = 0; k < sweep->count; k++) {
         int32_t i = sweep->order[k], at = k;
         double low = in_y ? box[i].low.y : box[i].low.x;
@@ -52,19 +55,24 @@ static void sort(Sweep *sweep, const Box *box, bool in_y) {
     for (int32_t k = 0; k < sweep->count; k++) {
         int32_t i = sweep->order[k];
         sweep->high[k] = in_y ? box[i].high.y : box[i].high.x;
+        sweep->across_low[k] = in_y ? box[i].low.x : box[i].low.y;
+        sweep->across_high[k] = in_y ? box[i].high.x : box[i].high.y;
+        sweep->moving[k] = moving[i];
     }
 }
 
 int sweep_pairs(Sweep *sweep, const Box *box, const bool *moving) {
     bool in_y = spread_in_y(sweep, box, moving);
-    sort(sweep, box, in_y);
+    sort(sweep, box, moving, in_y);
     sweep->pair_count = 0;
     for (int32_t k = 0; k < sweep->count; k++) {
         int32_t i = sweep->order[k];
-        double high = sweep->high[k];
+        double high = sweep->high[k], across_low = sweep->across_low[k], across_high = sweep->across_high[k];
+        bool moves = sweep->moving[k];
         for (int32_t l = k + 1; l < sweep->count && sweep->low[l] <= high; l++) {
+            if (sweep->across_low[l] > across_high || sweep->across_high[l] < across_low) continue;
+            if (!moves && !sweep->moving[l]) continue;
             int32_t j = sweep->order[l];
-            if (!(moving[i] || moving[j]) || !boxes_meet(&box[i], &box[j])) continue;
             if (sweep->pair_count == sweep->pair_capacity) {
                 int32_t capacity = 2 * sweep->pair_capacity;
                 Pair *more = realloc(sweep->pair, (size_t)capacity * sizeof *more);

@@ -7,6 +7,10 @@
 
 #include "vec.h"
 
+/* C's fmin and fmax are calls, for the sake of NaN. */
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double larger(double a, double b) { return a > b ? a : b; }
+
 typedef struct Box {
     Vec low, high;
 } Box;
@@ -16,8 +20,8 @@ static inline bool boxes_meet(const Box *a, const Box *b) {
 }
 
 static inline Box box_join(Box a, Box b) {
-    return (Box){vec(fmin(a.low.x, b.low.x), fmin(a.low.y, b.low.y)),
-                 vec(fmax(a.high.x, b.high.x), fmax(a.high.y, b.high.y))};
+    return (Box){vec(smaller(a.low.x, b.low.x), smaller(a.low.y, b.low.y)),
+                 vec(larger(a.high.x, b.high.x), larger(a.high.y, b.high.y))};
 }
 
 static inline Box box_grow(Box a, double by) {
@@ -32,6 +36,8 @@ typedef struct Sweep {
     int32_t count;
     int32_t *order;      /* boxes by their lower end, kept from call to call: nearly sorted the next time */
     double *low, *high;  /* along the axis, in that order */
+    double *across_low, *across_high; /* along the other one */
+    bool *moving;
     Pair *pair;
     int32_t pair_count, pair_capacity;
 } Sweep;

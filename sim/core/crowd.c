@@ -5,8 +5,9 @@
 
 static const double FRAME = 1.0 / 60;  /* [s]: contacts are found anew this often */
 static const int32_t SUBSTEPS = 4;     /* of a frame */
-static const double STIFFNESS = 0.25;  /* of a contact: its frequency times the substep */
-static const double DAMPING = 10;      /* ratio */
+static const int32_t PASSES = 8;       /* of a substep, at most */
+static const double STIFFNESS = 0.5;   /* of a pivot: its frequency times the substep */
+static const double DAMPING = 5;       /* its ratio */
 
 Crowd *crowd_create(const World *world) {
     Crowd *crowd = calloc(1, sizeof *crowd);
@@ -15,11 +16,12 @@ Crowd *crowd_create(const World *world) {
     crowd->shape_count = world->shape_count;
     crowd->piece_count = world->piece_count;
     size_t joints = (size_t)world->joint_count + 1;
+    crowd->heat = calloc((size_t)world->body_count, sizeof *crowd->heat);
     crowd->mover = calloc((size_t)world->body_count, sizeof *crowd->mover);
     crowd->pivot = calloc(joints, sizeof *crowd->pivot);
     crowd->pivot_joint = calloc(joints, sizeof *crowd->pivot_joint);
     crowd->joint_impulse = calloc(joints, sizeof *crowd->joint_impulse);
-    bool made = crowd->mover && crowd->pivot && crowd->pivot_joint && crowd->joint_impulse;
+    bool made = crowd->mover && crowd->heat && crowd->pivot && crowd->pivot_joint && crowd->joint_impulse;
     if (!made || touch_create(crowd, world) != SIM_OK || rest_create(crowd, world) != SIM_OK) {
         crowd_destroy(crowd);
         return NULL;
@@ -32,6 +34,7 @@ void crowd_destroy(Crowd *crowd) {
     touch_destroy(crowd);
     rest_destroy(crowd);
     free(crowd->mover);
+    free(crowd->heat);
     free(crowd->pivot);
     free(crowd->pivot_joint);
     free(crowd->joint_impulse);
@@ -78,25 +81,26 @@ static void move(Crowd *crowd, const World *world, double dt) {
     }
 }
 
-static void substep(Crowd *crowd, World *world, double left, double dt) {
+static int substep(Crowd *crowd, World *world, double left, double dt) {
     static const Soft rigid = {0, 1, 0};
     Mover *mover = crowd->mover;
-    Soft between = soft(STIFFNESS / dt, DAMPING, dt), wall = soft(2 * STIFFNESS / dt, DAMPING, dt);
-    Soft hinge = soft(2 * STIFFNESS / dt, 5, dt);
+    Soft hinge = soft(STIFFNESS / dt, DAMPING, dt);
     double threshold = 4 * dt * vlength(world->gravity);
     bool found;
+    int status = SIM_OK;
     touch_refresh(crowd, world, left, threshold);
     accelerate(crowd, world, dt);
     contacts_measure(crowd->contact, crowd->contact_count, mover, threshold);
-    touch_near(crowd, world, left, dt, threshold, &found);
     pivots_warm_start(crowd->pivot, crowd->pivot_count, mover);
     contacts_warm_start(crowd->contact, crowd->contact_count, mover);
-    for (int32_t pass = 0; pass < 3; pass++) {
+    for (int32_t pass = 0; pass < PASSES; pass++) {
         pivots_solve(crowd->pivot, crowd->pivot_count, mover, hinge);
-        contacts_solve(crowd->contact, crowd->contact_count, mover, between, wall, dt);
-        touch_near(crowd, world, left, dt, threshold, &found);
-        if (!found) break;
+        crowd->passes++;
+        bool heated = contacts_solve(crowd->contact, crowd->contact_count, mover, dt, crowd->heat, crowd->passes, pass == 0);
+        status = touch_near(crowd, world, left, dt, threshold, pass == 0, &found);
+        if (status != SIM_OK || !(found || heated)) break;
     }
+    if (status != SIM_OK) return status;
     move(crowd, world, dt);
     touch_advance(crowd, dt);
     crowd->moment++;
@@ -105,6 +109,7 @@ static void substep(Crowd *crowd, World *world, double left, double dt) {
     contacts_bounce(crowd->contact, crowd->contact_count, mover);
     world->profile.crowd_steps++;
     world->profile.crowd_contacts += crowd->contact_count;
+    return SIM_OK;
 }
 
 static void store(Crowd *crowd, World *world) {
@@ -128,10 +133,11 @@ static int frame(Crowd *crowd, World *world, double dt) {
     if (status != SIM_OK) return status;
     load_pivots(crowd, world);
     touch_pivots(crowd);
-    for (int32_t k = 0; k < substeps; k++) substep(crowd, world, dt - k * h, h);
+    for (int32_t k = 0; k < substeps && status == SIM_OK; k++) status = substep(crowd, world, dt - k * h, h);
+    if (status != SIM_OK) return status;
     store(crowd, world);
     rest_update(crowd, world, dt);
-    return SIM_OK;
+    return memory_store(&crowd->memory, crowd->contact, crowd->contact_count, crowd->mover);
 }
 
 static void release(Crowd *crowd, World *world) {

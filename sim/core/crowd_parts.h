@@ -5,7 +5,7 @@
 #include "broad.h"
 #include "crowd.h"
 #include "posed.h"
-#include "crowd_rows.h"
+#include "crowd_memory.h"
 
 /* Two pieces whose boxes meet but that do not touch yet: they cannot before the gap along the normal is used up. */
 typedef struct Near {
@@ -15,24 +15,27 @@ typedef struct Near {
     double gap;
 } Near;
 
-/* Where contacts of the frame before are found again, by the pair of pieces. */
-typedef struct Memory {
-    Contact *contact;
-    int32_t count;
-    int32_t *slot; /* open addressing; -1: empty */
-    int32_t slots; /* a power of two */
-} Memory;
+/* How far a body may move in the frame before what it may meet is looked for anew. */
+typedef struct Range {
+    Vec low, high; /* of the way of its centre */
+    double room;   /* beyond that, and for turning */
+} Range;
 
 struct Crowd {
     double tolerance;
     int32_t body_count, shape_count, piece_count;
     Mover *mover;        /* by body */
+    int64_t *heat;       /* by body: the last pass that changed it noticeably */
+    int64_t passes;
     Pose *start;         /* by body: when the frame began */
+    double *start_angle, *body_swing;
     int64_t *placed;     /* by body: the moment for which its outlines hold */
     int64_t moment;      /* counts frames and substeps */
     Posed posed;
     Box *piece_box;      /* by piece, when the frame began, without margins */
     Box *shape_box;      /* by shape: all that it may sweep in the frame */
+    Range *range;        /* by body: within which those boxes hold */
+    KeySet known;        /* the pairs of pieces that are contacts or near ones, once a body has left its range; else -1 of them */
     bool *shape_moves;
     Sweep sweep;
     Near *near;
@@ -50,7 +53,7 @@ struct Crowd {
     int32_t *island;     /* by body: union-find */
     double *island_time;
     int32_t *ring;       /* by body: the next one that was put to rest with it */
-    bool *roused;        /* by body: woken in this frame */
+    double *roused;      /* by body: how hard it was woken in this frame [m/s], or 0 */
     bool *touched;       /* by body: has a contact, a joint, or something near */
 };
 
@@ -62,15 +65,15 @@ void touch_destroy(Crowd *crowd);
 void touch_place(Crowd *crowd, const World *world, int32_t body);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
 void touch_refresh(Crowd *crowd, World *world, double left, double threshold);
-int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool first,
+               bool *found);
 void touch_advance(Crowd *crowd, double substep);
 
 /* crowd_rest.c */
 int rest_create(Crowd *crowd, const World *world);
 void rest_destroy(Crowd *crowd);
-void rest_wake(Crowd *crowd, World *world, int32_t body);
 bool rest_wake_joined(Crowd *crowd, World *world);
-bool rest_rouses(const Crowd *crowd, const World *world, int32_t body);
+bool rest_disturb(Crowd *crowd, World *world, int32_t body, int32_t by, bool close);
 void rest_update(Crowd *crowd, World *world, double dt);
 
 #endif

@@ -1,13 +1,14 @@
-/* Putting islands to rest, and waking them.
+/* Putting bodies to rest, and waking them.
  *
- * A body is still while it stays within a small distance of where it was; an island, all that hangs together by touch
- * and joints, rests once all its bodies have been still for a while.
+ * A body is still while it stays within a small distance of where it was.  It rests once it, what it is joined to, and
+ * all that presses on it have been still for a while: the bottom of a pile rests while its top still moves.
  */
 #include <stdlib.h>
 
 #include "crowd_parts.h"
 
 static const double STILL_TIME = 0.25;    /* [s] */
+static const double KNOCK = 0.1;          /* of the speed of falling by its own reach: what a woken body passes on */
 static const double STILL_SHARE = 2e-3;   /* of a body's reach: what it may move in that time */
 
 int rest_create(Crowd *crowd, const World *world) {
@@ -42,28 +43,33 @@ void rest_destroy(Crowd *crowd) {
  * on drifting. */
 static double still_distance(const World *world, const Body *body, double tolerance) {
     bool pulled = world->gravity.x != 0 || world->gravity.y != 0;
-    return pulled ? fmax(STILL_SHARE * body->reach, 0.1 * tolerance) : 1e-9 * body->reach;
-}
-
-/* Whether a body is too fast to come to rest, or was woken in this frame: it wakes what it touches. */
-bool rest_rouses(const Crowd *crowd, const World *world, int32_t body) {
-    const Body *b = &world->body[body];
-    if (b->mode != MODE_CROWD) return false;
-    double speed = vlength(b->velocity) + b->reach * fabs(b->spin);
-    return crowd->roused[body] || speed * STILL_TIME > still_distance(world, b, crowd->tolerance);
+    return pulled ? larger(STILL_SHARE * body->reach, 0.1 * tolerance) : 1e-9 * body->reach;
 }
 
 /* Wake a body and all that were put to rest with it. */
-void rest_wake(Crowd *crowd, World *world, int32_t body) {
+static void wake(Crowd *crowd, World *world, int32_t body, double strength) {
     int32_t at = body;
     do {
         int32_t next = crowd->ring[at];
         crowd->ring[at] = at;
         if (world->body[at].mode == MODE_REST) world->body[at].mode = MODE_CROWD;
         crowd->still_time[at] = 0;
-        crowd->roused[at] = true;
+        crowd->roused[at] = strength;
         at = next;
     } while (at != body);
+}
+
+/* A resting body that a moving one is about to meet wakes, unless that one is about to rest itself; a woken one wakes
+ * those that it touches (`close`), each less hard than the one before.  Whether it woke. */
+bool rest_disturb(Crowd *crowd, World *world, int32_t body, int32_t by, bool close) {
+    const Body *mover = &world->body[by], *rester = &world->body[body];
+    if (rester->mode != MODE_REST || mover->mode != MODE_CROWD) return false;
+    double speed = vlength(mover->velocity) + mover->reach * fabs(mover->spin);
+    bool moves = speed * STILL_TIME > still_distance(world, mover, crowd->tolerance);
+    bool passes_on = close && crowd->roused[by] > KNOCK * sqrt(vlength(world->gravity) * mover->reach);
+    if (!moves && !passes_on) return false;
+    wake(crowd, world, body, larger(speed, crowd->roused[by]) / 2);
+    return true;
 }
 
 /* What hangs on a moving body moves. Whether anything woke. */
@@ -77,7 +83,7 @@ bool rest_wake_joined(Crowd *crowd, World *world) {
             b = other;
         }
         if (!crowd_moves(world, a) || world->body[b].mode != MODE_REST) continue;
-        rest_wake(crowd, world, b);
+        wake(crowd, world, b, 0);
         woke = true;
     }
     return woke;
@@ -96,20 +102,31 @@ static void join(int32_t *island, int32_t i, int32_t j) {
     if (j < i) island[i] = j;
 }
 
+/* Bodies on joints rest together. */
 static void find_islands(Crowd *crowd, const World *world) {
     for (int32_t i = 0; i < world->body_count; i++) crowd->island[i] = i;
-    for (int32_t i = 0; i < crowd->contact_count; i++) {
-        const Contact *c = &crowd->contact[i];
-        if (c->walled) continue;
-        for (int32_t k = 0; k < c->count; k++)
-            if (c->point[k].impulse_n > 0) {
-                join(crowd->island, c->a, c->b);
-                break;
-            }
-    }
     for (int32_t i = 0; i < crowd->pivot_count; i++) {
         const Pivot *p = &crowd->pivot[i];
         if (crowd_moves(world, p->a) && crowd_moves(world, p->b)) join(crowd->island, p->a, p->b);
+    }
+}
+
+/* How long the islands have been still, each with what presses on it. */
+static void find_island_times(Crowd *crowd, const World *world) {
+    double *time = crowd->island_time;
+    for (int32_t i = 0; i < world->body_count; i++) time[i] = INFINITY;
+    for (int32_t i = 0; i < world->body_count; i++) {
+        if (!crowd_moves(world, i)) continue;
+        int32_t r = root(crowd->island, i);
+        time[r] = smaller(time[r], crowd->touched[i] ? crowd->still_time[i] : 0);
+    }
+    for (int32_t i = 0; i < crowd->contact_count; i++) {
+        const Contact *c = &crowd->contact[i];
+        bool presses = c->point[0].impulse_n > 0 || (c->count > 1 && c->point[1].impulse_n > 0);
+        if (!presses || !crowd_moves(world, c->a) || !crowd_moves(world, c->b)) continue;
+        int32_t a = root(crowd->island, c->a), b = root(crowd->island, c->b);
+        time[a] = smaller(time[a], crowd->still_time[c->b]);
+        time[b] = smaller(time[b], crowd->still_time[c->a]);
     }
 }
 
@@ -132,12 +149,7 @@ static void update_still(Crowd *crowd, const World *world, double dt) {
 void rest_update(Crowd *crowd, World *world, double dt) {
     update_still(crowd, world, dt);
     find_islands(crowd, world);
-    for (int32_t i = 0; i < world->body_count; i++) crowd->island_time[i] = INFINITY;
-    for (int32_t i = 0; i < world->body_count; i++) {
-        if (!crowd_moves(world, i)) continue;
-        int32_t r = root(crowd->island, i);
-        crowd->island_time[r] = fmin(crowd->island_time[r], crowd->touched[i] ? crowd->still_time[i] : 0);
-    }
+    find_island_times(crowd, world);
     for (int32_t i = 0; i < world->body_count; i++) {
         if (!crowd_moves(world, i)) continue;
         int32_t r = root(crowd->island, i);

@@ -1,12 +1,12 @@
-/* Sequential impulses on soft rows: TGS-soft of Catto's Solver2D (2024), in velocities, with substeps.
+/* Sequential impulses with substeps and relaxing: TGS of Catto's Solver2D (2024).
  *
- * A row wants C' = -rate * C with softness; a pass goes through the rows in order and applies what each still lacks,
- * with the sum clamped (contact: no pull; friction: Coulomb's cone).  Relaxing passes take out the velocity that the
- * bias put in.
+ * A pass goes through the rows in order and applies what each still lacks, with the sum clamped (contact: no pull;
+ * friction: Coulomb's cone).  Overlap is driven out at a rate; relaxing passes take out the velocity that this put in.
+ * Contacts are rigid rather than soft: a soft one sags under a pile by its load over its stiffness.
  */
 #include "crowd_rows.h"
 
-static const Soft RIGID = {0, 1, 0};
+static const double RATE = 0.2; /* share of an overlap that a substep drives out */
 
 Soft soft(double frequency, double damping, double dt) {
     double omega = 2 * 3.14159265358979323846 * frequency;
@@ -61,9 +61,9 @@ static inline void solve_friction(Contact *c, Point *p, Mover *a, Mover *b, Vec 
     push(a, b, t, p->spin_ta, p->spin_tb, impulse);
 }
 
-static inline void solve_normal(Contact *c, Point *p, Mover *a, Mover *b, double bias, double mass, double back) {
+static inline void solve_normal(Contact *c, Point *p, Mover *a, Mover *b, double bias) {
     double v = speed(a, b, c->normal, p->spin_na, p->spin_nb);
-    double sum = p->impulse_n - p->mass_n * mass * (v + bias) - back * p->impulse_n;
+    double sum = p->impulse_n - p->mass_n * (v + bias);
     sum = sum > 0 ? sum : 0;
     double impulse = sum - p->impulse_n;
     p->impulse_n = sum;
@@ -76,25 +76,34 @@ static inline double separation(const Contact *c, const Point *p, const Mover *a
            0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
 }
 
-void contacts_solve(Contact *contact, int32_t count, Mover *mover, Soft free, Soft walled, double dt) {
-    double inverse_dt = 1 / dt;
+bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first) {
+    double inverse_dt = 1 / dt, rate = RATE * inverse_dt;
+    bool heated = false;
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
+        if (!first && heat[c->a] < pass - 1 && heat[c->b] < pass - 1) continue;
         Mover *a = &mover[c->a], *b = &mover[c->b];
-        Soft s = c->walled ? walled : free;
+        bool hot = false;
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
-            double gap = separation(c, p, a, b);
+            double gap = separation(c, p, a, b), before = p->impulse_n, bias;
             if (gap > 0) {
-                solve_normal(c, p, a, b, gap * inverse_dt, 1, 0);
+                bias = gap * inverse_dt;
             } else {
-                double bias = gap * s.rate;
-                solve_normal(c, p, a, b, bias > -c->push ? bias : -c->push, s.mass, s.impulse);
+                bias = gap + c->slop < 0 ? rate * (gap + c->slop) : 0;
+                bias = bias > -c->push ? bias : -c->push;
             }
+            solve_normal(c, p, a, b, bias);
+            hot = hot || fabs(p->impulse_n - before) * dt > p->mass_n * c->fine;
         }
         Vec t = vperp(c->normal);
         for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
+        if (!hot) continue;
+        heated = true;
+        if (a->inverse_mass > 0) heat[c->a] = pass;
+        if (b->inverse_mass > 0) heat[c->b] = pass;
     }
+    return heated;
 }
 
 /* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
@@ -114,7 +123,7 @@ void contacts_relax(Contact *contact, int32_t count, Mover *mover, double dt) {
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
             double gap = separation(c, p, a, b);
-            solve_normal(c, p, a, b, gap > 0 ? gap * inverse_dt : 0, RIGID.mass, RIGID.impulse);
+            solve_normal(c, p, a, b, gap > 0 ? gap * inverse_dt : 0);
         }
         Vec t = vperp(c->normal);
         for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
@@ -128,7 +137,7 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
             if (p->approach == 0 || p->impulse_n <= 0) continue;
-            solve_normal(c, p, &mover[c->a], &mover[c->b], c->elasticity * p->approach, 1, 0);
+            solve_normal(c, p, &mover[c->a], &mover[c->b], c->elasticity * p->approach);
             p->approach = 0;
         }
     }

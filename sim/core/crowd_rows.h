@@ -2,6 +2,7 @@
 #ifndef ROWS_H
 #define ROWS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "vec.h"
@@ -15,7 +16,7 @@ typedef struct Mover {
     double inverse_mass, inverse_moment;
 } Mover;
 
-/* Soft contact (Catto, "Solver2D", 2024): a spring and damper given by frequency and damping ratio, integrated implicitly. */
+/* A soft row (Catto, "Solver2D", 2024): a spring and damper given by frequency and damping ratio, integrated implicitly. */
 typedef struct Soft {
     double rate;    /* velocity wanted per metre of error [1/s] */
     double mass;    /* share of the impulse that a rigid row would take */
@@ -40,6 +41,8 @@ typedef struct Contact {
     int32_t count;
     int32_t walled;     /* one of the two cannot move */
     double slack;       /* how far the pair may shift before its points are found anew [m] */
+    double slop;        /* overlap that is left alone, so that resting contacts do not come and go [m] */
+    double fine;        /* of a substep: a way too short to matter [m] */
     Vec normal;         /* from a to b */
     double friction, elasticity;
     double push;        /* the fastest that an overlap is pushed apart [m/s] */
@@ -60,7 +63,10 @@ typedef struct Pivot {
 
 void contacts_warm_start(Contact *contact, int32_t count, Mover *mover);
 void contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold);
-void contacts_solve(Contact *contact, int32_t count, Mover *mover, Soft free, Soft walled, double dt);
+
+/* One pass.  heat: by mover, the last pass that changed it noticeably; a pass other than the first of a substep goes only
+ * to contacts of bodies that the pass before it heated.  Whether this pass heated any. */
+bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first);
 void contacts_relax(Contact *contact, int32_t count, Mover *mover, double dt);
 void contacts_bounce(Contact *contact, int32_t count, Mover *mover);
 

@@ -1,29 +1,21 @@
 /* Finding the crowd's contacts: boxes, then pieces; at once where they touch, in time where they only come near. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "crowd_parts.h"
 
 static const double SKIN = 1e-3; /* of the smaller reach: as near as that counts as touching */
 static const double MORE = 0.05; /* of the smaller reach: a contact's other end comes with it when it is as near as that */
+static const double ROOM = 0.1;  /* of a body's reach: what it may stray from its way before its pairs are looked for anew */
 static const double TURN = 0.03; /* [rad]: a pair that has turned so far in the frame is looked at again */
 
 static void *table(size_t count, size_t size) { return calloc(count + 1, size); }
 
 static int contact_room(Crowd *crowd, int32_t count) {
     if (count <= crowd->contact_capacity) return SIM_OK;
-    int32_t capacity = 2 * count + 64, slots = 64;
-    while (slots < 3 * capacity) slots *= 2;
+    int32_t capacity = 2 * count + 64;
     Contact *contact = realloc(crowd->contact, (size_t)capacity * sizeof *contact);
-    if (contact) crowd->contact = contact;
-    Contact *old = realloc(crowd->memory.contact, (size_t)capacity * sizeof *old);
-    if (old) crowd->memory.contact = old;
-    if (!contact || !old) return SIM_OUT_OF_MEMORY;
-    int32_t *slot = malloc((size_t)slots * sizeof *slot);
-    if (!slot) return SIM_OUT_OF_MEMORY;
-    free(crowd->memory.slot);
-    crowd->memory.slot = slot;
-    crowd->memory.slots = slots;
+    if (!contact) return SIM_OUT_OF_MEMORY;
+    crowd->contact = contact;
     crowd->contact_capacity = capacity;
     return SIM_OK;
 }
@@ -38,41 +30,6 @@ static int near_room(Crowd *crowd, int32_t count) {
     return SIM_OK;
 }
 
-static uint32_t hash(uint64_t key) {
-    key ^= key >> 31;
-    key *= 0x9e3779b97f4a7c15u;
-    return (uint32_t)(key >> 33);
-}
-
-/* The contacts of the last frame become memory. */
-static void remember(Crowd *crowd) {
-    Memory *memory = &crowd->memory;
-    Contact *free_again = memory->contact;
-    memory->contact = crowd->contact;
-    memory->count = crowd->contact_count;
-    crowd->contact = free_again;
-    crowd->contact_count = 0;
-}
-
-static void index_memory(Memory *memory) {
-    if (!memory->slot) return;
-    memset(memory->slot, 0xff, (size_t)memory->slots * sizeof *memory->slot);
-    uint32_t mask = (uint32_t)memory->slots - 1;
-    for (int32_t i = 0; i < memory->count; i++) {
-        uint32_t at = hash(memory->contact[i].key) & mask;
-        while (memory->slot[at] >= 0) at = (at + 1) & mask;
-        memory->slot[at] = i;
-    }
-}
-
-static const Contact *recall(const Memory *memory, uint64_t key) {
-    if (!memory->slot || memory->count == 0) return NULL;
-    uint32_t mask = (uint32_t)memory->slots - 1;
-    for (uint32_t at = hash(key) & mask; memory->slot[at] >= 0; at = (at + 1) & mask)
-        if (memory->contact[memory->slot[at]].key == key) return &memory->contact[memory->slot[at]];
-    return NULL;
-}
-
 int touch_create(Crowd *crowd, const World *world) {
     size_t bodies = (size_t)world->body_count, pieces = (size_t)world->piece_count, shapes = (size_t)world->shape_count;
     crowd->start = table(bodies, sizeof *crowd->start);
@@ -80,11 +37,19 @@ int touch_create(Crowd *crowd, const World *world) {
     crowd->piece_box = table(pieces, sizeof *crowd->piece_box);
     crowd->shape_box = table(shapes, sizeof *crowd->shape_box);
     crowd->shape_moves = table(shapes, sizeof *crowd->shape_moves);
-    if (!crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves)
+    crowd->range = table(bodies, sizeof *crowd->range);
+    crowd->start_angle = table(bodies, sizeof *crowd->start_angle);
+    crowd->body_swing = table(bodies, sizeof *crowd->body_swing);
+    if (!crowd->range || !crowd->start_angle || !crowd->body_swing || !crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves)
         return SIM_OUT_OF_MEMORY;
     if (sweep_create(&crowd->sweep, world->shape_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (contact_room(crowd, 2 * world->body_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
-    return posed_create(&crowd->posed, world);
+    if (posed_create(&crowd->posed, world) != SIM_OK) return SIM_OUT_OF_MEMORY;
+    for (int32_t i = 0; i < world->piece_count; i++) {
+        int32_t body = world->shape[world->piece[i].shape].body;
+        crowd->body_swing[body] = larger(crowd->body_swing[body], crowd->posed.swing[i]);
+    }
+    return SIM_OK;
 }
 
 void touch_destroy(Crowd *crowd) {
@@ -94,11 +59,14 @@ void touch_destroy(Crowd *crowd) {
     free(crowd->piece_box);
     free(crowd->shape_box);
     free(crowd->shape_moves);
+    free(crowd->range);
+    free(crowd->start_angle);
+    free(crowd->body_swing);
+    free(crowd->known.key);
     sweep_destroy(&crowd->sweep);
     free(crowd->near);
     free(crowd->contact);
-    free(crowd->memory.contact);
-    free(crowd->memory.slot);
+    memory_destroy(&crowd->memory);
 }
 
 /* Bring a body's outlines to where it is now. */
@@ -112,27 +80,52 @@ void touch_place(Crowd *crowd, const World *world, int32_t body) {
     crowd->placed[body] = crowd->moment;
 }
 
-/* The boxes of a body's pieces now, and those of its shapes over the coming frame. */
-static void find_boxes(Crowd *crowd, const World *world, int32_t body, double dt) {
+/* All that a box of the body may sweep while the body keeps to its range. */
+static Box swept(Box box, const Range *range) {
+    return box_grow((Box){vadd(box.low, range->low), vadd(box.high, range->high)}, range->room);
+}
+
+/* Let a body's range reach as far as it goes from where it is, at its present velocity. */
+static void widen_range(Crowd *crowd, const World *world, int32_t body, double left) {
+    const Mover *m = &crowd->mover[body];
+    Range *range = &crowd->range[body];
+    Vec end = vadd(m->moved, vmad(vscale(m->velocity, left), left * left, world->gravity));
+    range->low = vec(smaller(range->low.x, smaller(m->moved.x, end.x)), smaller(range->low.y, smaller(m->moved.y, end.y)));
+    range->high = vec(larger(range->high.x, larger(m->moved.x, end.x)), larger(range->high.y, larger(m->moved.y, end.y)));
+    range->room += ROOM * world->body[body].reach + smaller(fabs(m->spin) * left, 2.0) * crowd->body_swing[body];
+}
+
+static void sweep_boxes(Crowd *crowd, const World *world, int32_t body) {
     const Body *b = &world->body[body];
-    bool moves = b->mode == MODE_CROWD;
-    Vec travel = moves ? vmad(vscale(b->velocity, dt), dt * dt, world->gravity) : vec(0, 0);
     for (int32_t s = b->first_shape; s < b->first_shape + b->shape_count; s++) {
         const Shape *shape = &world->shape[s];
-        Box box = {0};
-        double swing = 0;
-        for (int32_t p = shape->first_piece; p < shape->first_piece + shape->piece_count; p++) {
-            crowd->piece_box[p] = posed_box(&crowd->posed, p);
-            box = p == shape->first_piece ? crowd->piece_box[p] : box_join(box, crowd->piece_box[p]);
-            swing = fmax(swing, crowd->posed.swing[p]);
-        }
-        if (moves) {
-            Box there = {vadd(box.low, travel), vadd(box.high, travel)};
-            box = box_grow(box_join(box, there), SKIN * b->reach + fmin(fabs(b->spin) * dt, 2.0) * swing);
-        }
-        crowd->shape_box[s] = box;
-        crowd->shape_moves[s] = moves;
+        Box box = crowd->piece_box[shape->first_piece];
+        for (int32_t p = 1; p < shape->piece_count; p++) box = box_join(box, crowd->piece_box[shape->first_piece + p]);
+        crowd->shape_box[s] = swept(box, &crowd->range[body]);
+        crowd->shape_moves[s] = b->mode == MODE_CROWD;
     }
+}
+
+/* Where the body is as the frame begins, and all that it may sweep in it. */
+static void start_body(Crowd *crowd, const World *world, int32_t body, double dt) {
+    const Body *b = &world->body[body];
+    Pose *start = &crowd->start[body];
+    bool known = crowd->placed[body] != 0 && start->p.x == b->position.x && start->p.y == b->position.y &&
+                 crowd->start_angle[body] == b->angle;
+    if (!known) {
+        *start = body_pose(b);
+        crowd->start_angle[body] = b->angle;
+        touch_place(crowd, world, body);
+        for (int32_t s = b->first_shape; s < b->first_shape + b->shape_count; s++) {
+            const Shape *shape = &world->shape[s];
+            for (int32_t p = 0; p < shape->piece_count; p++)
+                crowd->piece_box[shape->first_piece + p] = posed_box(&crowd->posed, shape->first_piece + p);
+        }
+    }
+    crowd->placed[body] = crowd->moment;
+    crowd->range[body] = (Range){{0, 0}, {0, 0}, 0};
+    if (b->mode == MODE_CROWD) widen_range(crowd, world, body, dt);
+    sweep_boxes(crowd, world, body);
 }
 
 /* How much nearer two bodies' pieces can come along the normal in dt, at their present velocities. */
@@ -161,28 +154,24 @@ static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, c
                     0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
 }
 
-static double smaller_reach(const World *world, int32_t piece_a, int32_t piece_b) {
-    return fmin(world->shape[world->piece[piece_a].shape].reach, world->shape[world->piece[piece_b].shape].reach);
+static double least_reach(const World *world, int32_t piece_a, int32_t piece_b) {
+    return smaller(world->shape[world->piece[piece_a].shape].reach, world->shape[world->piece[piece_b].shape].reach);
 }
 
 /* The points of a contact from its manifold, with the impulses that the same points had in `old`. */
-static void set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Contact *old) {
+static void set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Record *old) {
     const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
     Vec at_a = vadd(world->body[c->a].position, a->moved), at_b = vadd(world->body[c->b].position, b->moved);
-    Point last[2];
-    int32_t last_count = old ? old->count : 0;
-    for (int32_t l = 0; l < last_count; l++) last[l] = old->point[l];
     c->count = m->count;
     c->normal = m->normal;
     c->turned = b->turned - a->turned;
     c->moved = vsub(b->moved, a->moved);
     for (int32_t k = 0; k < m->count; k++) {
         fill_point(&c->point[k], &m->point[k], c, a, b, at_a, at_b);
-        for (int32_t l = 0; l < last_count; l++)
-            if (last[l].feature == m->point[k].feature) {
-                c->point[k].impulse_n = last[l].impulse_n;
-                c->point[k].impulse_t = last[l].impulse_t;
-                c->point[k].approach = last[l].approach;
+        for (int32_t l = 0; old && l < old->count; l++)
+            if (old->feature[l] == m->point[k].feature) {
+                c->point[k].impulse_n = old->impulse_n[l];
+                c->point[k].impulse_t = old->impulse_t[l];
             }
     }
 }
@@ -196,10 +185,10 @@ static bool slow(const World *world, int32_t body) {
 }
 
 static void add_contact(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
-    static const double PUSH = 20, SLACK = 0.05, ROLLING = 2e-3; /* per second, of the smaller reach, of it */
+    static const double PUSH = 20, SLACK = 0.05, SLOP = 0.005, FINE = 2.5e-3, ROLLING = 2e-3;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
-    double reach = smaller_reach(world, near->piece_a, near->piece_b);
+    double reach = least_reach(world, near->piece_a, near->piece_b);
     Contact *c = &crowd->contact[crowd->contact_count++];
     c->a = near->a;
     c->b = near->b;
@@ -208,9 +197,11 @@ static void add_contact(Crowd *crowd, const World *world, const Near *near, cons
     c->elasticity = pair_elasticity(sa, sb);
     c->push = PUSH * reach;
     c->slack = SLACK * reach;
+    c->slop = SLOP * reach;
+    c->fine = FINE * reach;
     c->rolling = slow(world, near->a) && slow(world, near->b) ? ROLLING * reach * (c->friction < 1 ? c->friction : 1) : 0;
-    c->key = (uint64_t)(uint32_t)near->piece_a << 32 | (uint32_t)near->piece_b;
-    set_points(crowd, world, c, m, recall(&crowd->memory, c->key));
+    c->key = pair_key(near->piece_a, near->piece_b);
+    set_points(crowd, world, c, m, memory_recall(&crowd->memory, c->key));
 }
 
 static void find_manifold(Crowd *crowd, World *world, int32_t piece_a, int32_t piece_b, int32_t a, int32_t b, double margin,
@@ -234,7 +225,7 @@ static bool look(Crowd *crowd, World *world, Near *near, double soon, double lat
 }
 
 static double skin_of(const World *world, const Near *near) {
-    return SKIN * smaller_reach(world, near->piece_a, near->piece_b);
+    return SKIN * least_reach(world, near->piece_a, near->piece_b);
 }
 
 /* An upper bound of how much nearer two bodies come in dt, whatever the direction. */
@@ -244,50 +235,48 @@ static double closing(const Crowd *crowd, const World *world, const Near *near, 
     return dt * (vlength(vsub(b->velocity, a->velocity)) + turning) + dt * dt * vlength(world->gravity);
 }
 
-/* Whether a body wakes a resting one at this distance: a fast one that may hit it, or one just woken that touches it. */
-static bool wakes(const Crowd *crowd, const World *world, int32_t body, double gap, double skin) {
-    return rest_rouses(crowd, world, body) && (gap <= skin || !crowd->roused[body]);
+/* How far two boxes are apart, and along which axis: at least so far are the pieces in them. */
+static double box_gap(const Box *a, const Box *b, Vec *normal) {
+    double right = b->low.x - a->high.x, left = a->low.x - b->high.x;
+    double above = b->low.y - a->high.y, below = a->low.y - b->high.y;
+    double x = larger(right, left), y = larger(above, below);
+    *normal = x > y ? vec(right > left ? 1 : -1, 0) : vec(0, above > below ? 1 : -1);
+    return larger(x, y);
 }
 
 static int consider(Crowd *crowd, World *world, Near near, double dt, double substep, bool *woke) {
     if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (contact_room(crowd, crowd->contact_count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     double skin = skin_of(world, &near), later = closing(crowd, world, &near, dt) + skin;
-    double more = MORE * smaller_reach(world, near.piece_a, near.piece_b);
     double soon = closing(crowd, world, &near, substep) + skin;
-    bool contact = look(crowd, world, &near, soon, later + more);
-    if (near.gap > later) return SIM_OK;
+    bool contact = false;
+    near.gap = box_gap(&crowd->piece_box[near.piece_a], &crowd->piece_box[near.piece_b], &near.normal);
+    if (near.gap <= soon)
+        contact = look(crowd, world, &near, soon, later + MORE * least_reach(world, near.piece_a, near.piece_b));
     if (!contact) crowd->near[crowd->near_count++] = near;
+    if (near.gap > later) return SIM_OK;
     crowd->touched[near.a] = crowd->touched[near.b] = true;
-    if (world->body[near.a].mode == MODE_REST && wakes(crowd, world, near.b, near.gap, skin)) {
-        rest_wake(crowd, world, near.a);
-        *woke = true;
-    }
-    if (world->body[near.b].mode == MODE_REST && wakes(crowd, world, near.a, near.gap, skin)) {
-        rest_wake(crowd, world, near.b);
-        *woke = true;
-    }
+    bool close = near.gap <= skin;
+    *woke = rest_disturb(crowd, world, near.a, near.b, close) || *woke;
+    *woke = rest_disturb(crowd, world, near.b, near.a, close) || *woke;
     return SIM_OK;
+}
+
+static bool takes_part(const World *world, const Shape *shape) {
+    Mode mode = world->body[shape->body].mode;
+    return mode != MODE_FLIGHT && mode != MODE_SMOOTH;
 }
 
 static int consider_shapes(Crowd *crowd, World *world, Pair pair, double dt, double substep, bool *woke) {
     const Shape *sa = &world->shape[pair.a], *sb = &world->shape[pair.b];
-    Mode ma = world->body[sa->body].mode, mb = world->body[sb->body].mode;
-    if (ma == MODE_FLIGHT || mb == MODE_FLIGHT || ma == MODE_SMOOTH || mb == MODE_SMOOTH) return SIM_OK;
-    if (!world_collides(world, pair.a, pair.b)) return SIM_OK;
+    if (!takes_part(world, sa) || !takes_part(world, sb) || !world_collides(world, pair.a, pair.b)) return SIM_OK;
     bool many = sa->piece_count > 1 || sb->piece_count > 1;
-    double margin_a = 0, margin_b = 0;
-    if (many) { /* as far as the shapes' boxes are swept */
-        Near whole = {sa->first_piece, sb->first_piece, sa->body, sb->body, {0, 0}, 0};
-        margin_a = closing(crowd, world, &whole, dt) + skin_of(world, &whole);
-        margin_b = margin_a;
-    }
     for (int32_t p = sa->first_piece; p < sa->first_piece + sa->piece_count; p++) {
-        Box box_a = box_grow(crowd->piece_box[p], margin_a);
+        Box box_a = many ? swept(crowd->piece_box[p], &crowd->range[sa->body]) : crowd->piece_box[p];
         if (many && !boxes_meet(&box_a, &crowd->shape_box[pair.b])) continue;
         for (int32_t q = sb->first_piece; q < sb->first_piece + sb->piece_count; q++) {
             if (many) {
-                Box box_b = box_grow(crowd->piece_box[q], margin_b);
+                Box box_b = swept(crowd->piece_box[q], &crowd->range[sb->body]);
                 if (!boxes_meet(&box_a, &box_b)) continue;
             }
             Near near = {p, q, sa->body, sb->body, {0, 0}, 0};
@@ -317,28 +306,21 @@ static void load(Crowd *crowd, const World *world) {
  * woken, and those that they reach in turn. */
 int touch_frame(Crowd *crowd, World *world, double dt, double substep) {
     crowd->moment++;
-    remember(crowd);
-    index_memory(&crowd->memory);
-    for (int32_t i = 0; i < world->body_count; i++) crowd->roused[i] = false;
+    for (int32_t i = 0; i < world->body_count; i++) crowd->roused[i] = 0;
+    crowd->known.count = -1;
     bool woke;
     do {
         woke = rest_wake_joined(crowd, world);
         load(crowd, world);
         crowd->near_count = crowd->contact_count = 0;
         for (int32_t i = 0; i < world->body_count; i++) {
-            Body *body = &world->body[i];
+            const Body *body = &world->body[i];
             if (body->mode == MODE_FLIGHT || body->mode == MODE_SMOOTH) {
                 for (int32_t s = body->first_shape; s < body->first_shape + body->shape_count; s++)
                     crowd->shape_moves[s] = false;
                 continue;
             }
-            bool still = body->mode != MODE_CROWD && crowd->placed[i] != 0;
-            if (!still || crowd->start[i].p.x != body->position.x || crowd->start[i].p.y != body->position.y) {
-                crowd->start[i] = body_pose(body);
-                touch_place(crowd, world, i);
-            }
-            crowd->placed[i] = crowd->moment;
-            find_boxes(crowd, world, i, dt);
+            start_body(crowd, world, i, dt);
         }
         if (sweep_pairs(&crowd->sweep, crowd->shape_box, crowd->shape_moves) != SIM_OK) return SIM_OUT_OF_MEMORY;
         for (int32_t k = 0; k < crowd->sweep.pair_count; k++) {
@@ -360,27 +342,90 @@ void touch_refresh(Crowd *crowd, World *world, double left, double threshold) {
         Near near = {(int32_t)(c->key >> 32), (int32_t)(c->key & 0xffffffffu), c->a, c->b, c->normal, 0};
         Manifold m;
         find_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b, closing(crowd, world, &near, left) + c->slack, &m);
-        set_points(crowd, world, c, &m, c);
+        Record old = contact_record(c);
+        set_points(crowd, world, c, &m, &old);
         contacts_measure(c, 1, crowd->mover, threshold);
     }
 }
 
-/* In a substep: the near pairs that may touch in it at the present velocities become contacts. */
-int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found) {
-    int32_t kept = 0, first = crowd->contact_count;
+/* All pairs of pieces that are contacts or near ones. */
+static int fill_known(Crowd *crowd) {
+    KeySet *known = &crowd->known;
+    int status = keyset_room(known, crowd->near_count + crowd->contact_count + 1);
+    if (status != SIM_OK) return status;
+    keyset_clear(known);
+    for (int32_t i = 0; i < crowd->contact_count; i++) keyset_add(known, crowd->contact[i].key);
+    for (int32_t i = 0; i < crowd->near_count; i++)
+        keyset_add(known, pair_key(crowd->near[i].piece_a, crowd->near[i].piece_b));
+    return SIM_OK;
+}
+
+/* A pair of shapes that may meet after all: those of its pieces that are not known yet come near, to be looked at. */
+static int add_near(Crowd *crowd, const World *world, int32_t shape_a, int32_t shape_b) {
+    const Shape *sa = &world->shape[shape_a], *sb = &world->shape[shape_b];
+    for (int32_t p = sa->first_piece; p < sa->first_piece + sa->piece_count; p++)
+        for (int32_t q = sb->first_piece; q < sb->first_piece + sb->piece_count; q++) {
+            Box box_a = swept(crowd->piece_box[p], &crowd->range[sa->body]);
+            Box box_b = swept(crowd->piece_box[q], &crowd->range[sb->body]);
+            if (!boxes_meet(&box_a, &box_b)) continue;
+            if (keyset_room(&crowd->known, crowd->known.count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
+            if (!keyset_add(&crowd->known, pair_key(p, q))) continue;
+            if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
+            if (contact_room(crowd, crowd->contact_count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
+            crowd->near[crowd->near_count++] = (Near){p, q, sa->body, sb->body, {0, 0}, 0};
+        }
+    return SIM_OK;
+}
+
+/* Bodies that were knocked out of their range may meet others: look for the pairs. */
+static int follow_strays(Crowd *crowd, const World *world, double left, double dt) {
+    for (int32_t i = 0; i < world->body_count; i++) {
+        const Mover *m = &crowd->mover[i];
+        const Range *range = &crowd->range[i];
+        if (m->inverse_mass == 0) continue;
+        Vec to = vmad(m->moved, dt, m->velocity);
+        double out = larger(larger(range->low.x - to.x, to.x - range->high.x), larger(range->low.y - to.y, to.y - range->high.y));
+        double turning = smaller(fabs(m->turned) + fabs(m->spin) * dt, 2.0) * crowd->body_swing[i];
+        if (larger(out, 0) + turning <= range->room) continue;
+        widen_range(crowd, world, i, left);
+        sweep_boxes(crowd, world, i);
+        if (crowd->known.count < 0 && fill_known(crowd) != SIM_OK) return SIM_OUT_OF_MEMORY;
+        const Body *body = &world->body[i];
+        for (int32_t s = body->first_shape; s < body->first_shape + body->shape_count; s++)
+            for (int32_t k = 0; k < world->shape_count; k++) {
+                if (!boxes_meet(&crowd->shape_box[s], &crowd->shape_box[k])) continue;
+                if (!takes_part(world, &world->shape[k]) || !world_collides(world, s, k)) continue;
+                int status = add_near(crowd, world, s < k ? s : k, s < k ? k : s);
+                if (status != SIM_OK) return status;
+            }
+    }
+    return SIM_OK;
+}
+
+/* After a pass: the near pairs that may touch in the substep at the velocities that it left become contacts.  After passes
+ * but the first only pairs of bodies that it heated are looked at.  Whether any were found; they are hot. */
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool first, bool *found) {
+    int64_t pass = crowd->passes, *heat = crowd->heat;
+    int status = follow_strays(crowd, world, left, substep);
+    if (status != SIM_OK) return status;
+    int32_t kept = 0, before = crowd->contact_count;
     for (int32_t i = 0; i < crowd->near_count; i++) {
         Near near = crowd->near[i];
-        if (near.gap - approach(crowd, &near, substep) <= 0) {
-            double soon = closing(crowd, world, &near, substep);
-            if (look(crowd, world, &near, soon, closing(crowd, world, &near, left) + soon + MORE * smaller_reach(world, near.piece_a, near.piece_b)))
+        bool may = first || heat[near.a] == pass || heat[near.b] == pass || near.gap <= 0;
+        if (may && near.gap - approach(crowd, &near, substep) <= 0) {
+            double soon = closing(crowd, world, &near, substep), reach = least_reach(world, near.piece_a, near.piece_b);
+            if (look(crowd, world, &near, soon, closing(crowd, world, &near, left) + soon + MORE * reach)) {
+                if (crowd->mover[near.a].inverse_mass > 0) heat[near.a] = pass;
+                if (crowd->mover[near.b].inverse_mass > 0) heat[near.b] = pass;
                 continue;
+            }
         }
         crowd->near[kept++] = near;
     }
     crowd->near_count = kept;
-    *found = crowd->contact_count > first;
+    *found = crowd->contact_count > before;
     if (*found)
-        contacts_measure(crowd->contact + first, crowd->contact_count - first, crowd->mover, threshold);
+        contacts_measure(crowd->contact + before, crowd->contact_count - before, crowd->mover, threshold);
     return SIM_OK;
 }
 

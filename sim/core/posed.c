@@ -48,7 +48,7 @@ int posed_create(Posed *posed, const World *world) {
                                       whole ? NULL : posed->arriving + first, whole ? NULL : posed->leaving + first,
                                       count, piece->radius};
         for (int32_t k = 0; k < count; k++) {
-            posed->swing[i] = fmax(posed->swing[i], vlength(v[k]));
+            posed->swing[i] = larger(posed->swing[i], vlength(v[k]));
             if (count > 1) posed->local_normal[first + k] = side_normal(v[k], v[k + 1 < count ? k + 1 : 0]);
         }
         if (!whole) see_whole(posed, world, piece);

@@ -1,0 +1,50 @@
+/* What the crowd remembers of pairs of pieces from frame to frame. */
+#ifndef CROWD_MEMORY_H
+#define CROWD_MEMORY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "crowd_rows.h"
+
+static inline uint64_t pair_key(int32_t piece_a, int32_t piece_b) {
+    return (uint64_t)(uint32_t)piece_a << 32 | (uint32_t)piece_b;
+}
+
+/* The impulses of a contact, for warm starting. */
+typedef struct Record {
+    uint64_t key;
+    int32_t a, b, count;
+    uint32_t feature[2];
+    double impulse_n[2], impulse_t[2];
+} Record;
+
+typedef struct Memory {
+    Record *record, *spare;
+    int32_t count, capacity;
+    int32_t *slot; /* open addressing into record; -1: empty */
+    int32_t slots; /* a power of two */
+} Memory;
+
+void memory_destroy(Memory *memory);
+
+/* Take in the frame's contacts.  What is known of other pairs is kept where neither body took part in the frame: it is
+ * needed when they wake. Returns SIM_OK or SIM_OUT_OF_MEMORY. */
+int memory_store(Memory *memory, const Contact *contact, int32_t count, const Mover *mover);
+
+/* NULL when nothing is known of the pair. */
+const Record *memory_recall(const Memory *memory, uint64_t key);
+
+Record contact_record(const Contact *contact);
+
+/* A set of pairs. */
+typedef struct KeySet {
+    uint64_t *key; /* open addressing; 0: empty, as no pair is of piece 0 twice */
+    int32_t slots, count;
+} KeySet;
+
+int keyset_room(KeySet *set, int32_t count);
+void keyset_clear(KeySet *set);
+bool keyset_add(KeySet *set, uint64_t key); /* whether it is new; there must be room */
+
+#endif
