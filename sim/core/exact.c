@@ -78,6 +78,7 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     if (ta->motion.degree == 0 && tb->motion.degree == 0) return;
     double to = fmin(e->end, fmin(ta->motion.end, tb->motion.end));
     if (a != 0) to = fmin(to, fmax(ta->touch_time, b != 0 ? tb->touch_time : 0)); /* later ones are asked for again */
+    if (to <= from) return;
     int32_t closed = closed_features(e, a, b);
     Mover ma = {a, &ta->motion}, mb = {b, &tb->motion};
     e->world->profile.pairs += 1;

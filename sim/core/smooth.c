@@ -8,7 +8,8 @@
 #define RELAX_PROJECTION 1e-6 /* the same for projection, which is iterated anyway */
 #define FARTHEST 100.0        /* times the error that is corrected: a correction goes no farther */
 #define DECISIVE 1e-9         /* how far past its limit a force is when its event is taken, of the forces about */
-#define VELOCITY_TIME 1.0     /* an error in velocity counts as what it moves a body by in this time [s] */
+#define UNSURE 0.02       /* forces that redundant contacts may share out otherwise: ask again after this time [s] */
+#define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
 
 int smooth_create(Smooth *s, const World *world, double tolerance, Slack slack) {
     *s = (Smooth){.capacity = world->body_count, .tolerance = tolerance, .slack = slack};
@@ -390,7 +391,7 @@ static double find_end_of_modes(Smooth *s, System *system, const Motion *motion,
     for (int i = 0; i <= parts && !found; i++) {
         double t = from + (to - from) * i / parts, m = margin_at(s, system, motion, t, scale);
         if (m < 0) {
-            if (i == 0) return from;
+            if (i == 0) return fmin(to, from + UNSURE);
             found = true;
             after = t, low = m;
         } else {
@@ -421,8 +422,8 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
     store(system, s->start);
     int status = derive(s, system, s->start, s->k[0]);
     double scale = force_scale(system), margin = INFINITY, step;
-    bool checked = modes_margin(s, system, scale) >= 0; /* if not, forces were shared out otherwise: look again soon */
-    if (!checked) *h = fmin(*h, 0.02);
+    bool checked = modes_margin(s, system, scale) >= 0;
+    if (!checked) *h = fmin(*h, UNSURE);
     for (int tries = 0;; tries++) {
         step = fmin(*h, limit - from);
         margin = INFINITY;
@@ -453,7 +454,7 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
             dense(s, 6 * i + 3 + c, step, m->v[c]);
         }
     }
-    *ended = false;
+    *ended = !checked;
     if (margin < 0 && checked) {
         double stop = find_end_of_modes(s, system, motion, from, from + step, scale);
         *ended = stop <= from + step;

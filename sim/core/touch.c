@@ -6,6 +6,7 @@
 #include "touch.h"
 
 #define MAX_STEPS 4000
+#define PATIENCE 60 /* steps after which a search is not on its way to a root */
 
 /* ---------------------------------------------------------------- bounds */
 
@@ -136,6 +137,8 @@ static double search_shapes(const Search *s, const Shape *sa, const Shape *sb, d
         }
         double step = shapes_step(s, sa, sb, &pa, &pb, &bound, horizon - t);
         if (step <= 0) return t;
+        if (steps > PATIENCE)
+            step = fmax(step, 0.5 * s->slack->gap / bound.closing); /* creeping: half a slack at least */
         if (t + step >= to) return INFINITY;
         double next = fmin(t + step, horizon);
         t = next > t ? next : nextafter(t, INFINITY);
