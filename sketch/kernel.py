@@ -37,7 +37,7 @@ class ClosedFit(NamedTuple):
         conic: a, b, c, d, e of x² + y² = a(x² - y²) + 2bxy + cx + dy + e.
         round_residual: mean squared distance from it.
         residual: of the best k-gon, for k = 0 .. SIDES.
-        oddness: nats that its bowed sides, flat corners and short sides cost.
+        cost: nats to say the ink, given that polygon.
         corners: in the frame, (SIDES + 1, SIDES, 2).
     """
 
@@ -48,7 +48,7 @@ class ClosedFit(NamedTuple):
     conic: Array
     round_residual: float
     residual: list[float]
-    oddness: list[float]
+    cost: list[float]
     corners: Array
 
     def vertices(self, sides: int) -> Array:
@@ -75,7 +75,7 @@ def fit_closed(parts: list[Array], least_axis: float, cap: float) -> ClosedFit:
     out = np.empty(_OFFSETS[-1] + 2 * len(xy))
     at = out.ctypes.data
     _closed(xy.ctypes.data, ends.ctypes.data, len(ends), least_axis, cap, *(at + 8 * o for o in _OFFSETS))
-    frame, length, conic, residual, oddness, corners, rest = _OFFSETS
+    frame, length, conic, residual, cost, corners, rest = _OFFSETS
     return ClosedFit(
         mean=out[0:2],
         back=out[6:10].reshape(2, 2),
@@ -83,8 +83,8 @@ def fit_closed(parts: list[Array], least_axis: float, cap: float) -> ClosedFit:
         gap=float(out[length + 1]),
         conic=out[conic : conic + 5],
         round_residual=float(out[conic + 5]),
-        residual=out[residual:oddness].tolist(),
-        oddness=out[oddness:corners].tolist(),
+        residual=out[residual:cost].tolist(),
+        cost=out[cost:corners].tolist(),
         corners=out[corners:rest].reshape(SIDES + 1, SIDES, 2),
     )
 

@@ -23,7 +23,7 @@ OBSERVATIONS = 30  # independent observations in an outline's ink: neighbouring 
 TREMOR = 0.05  # spread of ink about what was meant, as a share of the radius
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius
 PARAMETER = 4.0  # nats to say one parameter to that precision: ln(page / tremor)
-ROUND = 40.0  # nats that a round outline is less usual than one of no corners and no sides would be
+ROUND = 36.0  # nats that a round outline is less usual than one of no corners and no sides would be
 FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
 BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
@@ -92,7 +92,7 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
     ring = _round(fit, names, gaps)
     out = [ring] if ring else []
     for k in range(3, 13):
-        cost = _misfit(fit.residual[k], fit.ink) + fit.oddness[k] + gaps
+        cost = fit.cost[k] + gaps
         vertices = fit.vertices(k)
         out.append(
             Fitted("polygon", names, cost + 2 * k * PARAMETER, vertices, k, math.sqrt(fit.residual[k]))
@@ -100,7 +100,7 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
         if k == 4:
             box, extra = _rectangle(fit, vertices)
             residual = fit.residual[4] + extra
-            cost = _misfit(residual, fit.ink) + fit.oddness[4] + gaps + 5 * PARAMETER
+            cost = fit.cost[4] + _misfit(residual, fit.ink) - _misfit(fit.residual[4], fit.ink) + gaps + 5 * PARAMETER
             out.append(Fitted("rectangle", names, cost, box, 4, math.sqrt(residual)))
     return out
 
@@ -121,7 +121,7 @@ def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float) -> Fitted | None
     middle = fit.mean + fit.back @ centre
     aspect = math.log(radii[0] / radii[1])
     cost = _misfit(fit.round_residual, fit.ink) + gaps
-    as_circle = ROUND + 0.5 * (aspect / 0.065) ** 2  # nobody's circles are round
+    as_circle = ROUND + 0.5 * (aspect / 0.072) ** 2  # nobody's circles are round
     as_ellipse = ROUND + 2 * PARAMETER + 3
     angles = np.linspace(0, 2 * math.pi, 24, endpoint=False)
     if as_circle <= as_ellipse:

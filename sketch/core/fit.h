@@ -32,6 +32,7 @@ typedef struct {
     double length;       /* of the run along the line */
     double bow;          /* how far the run's middle stands off its ends, to the left of the direction */
     double cost;         /* squared distances from the bowed line, and the price of the bow */
+    double spread2;      /* squared distances from the straight line */
 } Line;
 
 void runs_prepare(Runs *r);

@@ -48,8 +48,12 @@ static Frame normal_frame(const double *xy, int n, double least_axis)
     return f;
 }
 
+static const double OBSERVATIONS = 30; /* independent observations in an outline's ink: neighbouring points err together */
+static const double TREMOR = 0.05;     /* spread of ink about what was meant, in the frame: a share of the radius */
+static const double SLOPPY = 0.1;      /* nobody's ink is off by much more than this */
 static const double BOW = 0.025;    /* usual bow of a straight side, as a share of its length */
-static const double STIFFNESS = 0.02; /* (tremor / bow)²: while splitting, how much rather a side trembles than bows */
+/* (tremor / bow)², while splitting: how much rather a side trembles than bows. Both are tried. */
+static const double STIFFNESS[2] = {0.02, 0.6};
 static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
 static const double REFLEX = 1.2;  /* likewise one that turns inward */
 static const double FLATNESS = 0.12;
@@ -105,27 +109,36 @@ static double fit_round(const double *x, const double *y, const double *factor, 
 static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double cap2, double *vertices,
                           double *oddness)
 {
-    Line side[SIDES];
+    Line side[SIDES], chord[SIDES];
+    double drawn[2 * SIDES], turning = 0;
+    for (int i = 0; i < r->n; i++)
+        turning += r->x[i] * r->y[i + 1] - r->y[i] * r->x[i + 1];
+    double outward = turning > 0 ? 1 : -1; /* to the right of the samples' order, in a frame with y up */
     for (int q = 0; q < k; q++) {
-        side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q]);
-        double to_chord = 2.0 / 3 * side[q].bow; /* a side's corners are the ends of its bow */
-        side[q].x -= to_chord * side[q].dy;
-        side[q].y += to_chord * side[q].dx;
+        chord[q] = side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q]);
+        double off = 2.0 / 3 * side[q].bow; /* the drawn corners are the ends of the bows */
+        chord[q].x -= off * side[q].dy;
+        chord[q].y += off * side[q].dx;
+        /* the body reaches to the outer edge of its ink: one standard deviation beyond the line through the middle */
+        double spread = sqrt(side[q].spread2 / (cut[q + 1] - cut[q])) * outward;
+        side[q].x += spread * side[q].dy;
+        side[q].y -= spread * side[q].dx;
     }
     for (int q = 0; q < k; q++) { /* vertex q is where side q begins */
         int before = (q + k - 1) % k;
         int b = (start + cut[q]) % r->n, e = (b + r->n - 1) % r->n;
         double end[2] = {r->x[e], r->y[e]}, begin[2] = {r->x[b], r->y[b]};
+        corner(&chord[before], &chord[q], end, begin, drawn + 2 * q);
         corner(&side[before], &side[q], end, begin, vertices + 2 * q);
     }
     double sum = 0, odd = 0, around = 0, area = 0;
     for (int q = 0; q < k; q++) {
-        const double *a = vertices + 2 * q, *b = vertices + 2 * ((q + 1) % k);
+        const double *a = drawn + 2 * q, *b = drawn + 2 * ((q + 1) % k);
         around += hypot(b[0] - a[0], b[1] - a[1]);
         area += a[0] * b[1] - a[1] * b[0];
     }
     for (int q = 0; q < k; q++) {
-        const double *a = vertices + 2 * q, *b = vertices + 2 * ((q + 1) % k);
+        const double *a = drawn + 2 * q, *b = drawn + 2 * ((q + 1) % k);
         double dx = b[0] - a[0], dy = b[1] - a[1], l = hypot(dx, dy), bow = side[q].bow;
         for (int i = cut[q]; i < cut[q + 1]; i++) {
             double px = r->x[(start + i) % r->n] - a[0], py = r->y[(start + i) % r->n] - a[1];
@@ -137,7 +150,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
             }
             sum += fmin(h * h + 0.0625 * over * over, cap2) * factor[(start + i) % r->n];
         }
-        const double *c = vertices + 2 * ((q + 2) % k);
+        const double *c = drawn + 2 * ((q + 2) % k);
         double turn = atan2(dx * (c[1] - b[1]) - dy * (c[0] - b[0]), dx * (c[0] - b[0]) + dy * (c[1] - b[1]));
         int reflex = turn * area < 0;
         double bent = bow / (BOW * fmax(l, 1e-9));
@@ -179,16 +192,24 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
     }
 }
 
+/* Nats to say the ink's distances from an outline: Student's t for the tremor, unknown but about TREMOR, and a normal prior
+ * on how careless people are. ink: its length in the frame. */
+static double misfit(double mean_square, double ink)
+{
+    double n = OBSERVATIONS * ink / (2 * 3.14159265358979323846);
+    return 0.5 * n * (log1p(mean_square / (TREMOR * TREMOR)) + mean_square / (SLOPPY * SLOPPY));
+}
+
 /* Fit the readings of a closed chain of ink.
  *
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
  * least_axis: the frame's radii are at least this long [pixels]: below, the pen's own width is what one sees.
  * cap: distances count up to this, in the frame.
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; conic: 5 and its mean squared
- * distance; residual[k]: mean squared distance of the best k-gon; oddness[k]: nats that its bows, flat corners and short
- * sides cost; vertices[k][SIDES][2] in the frame. */
+ * distance; residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed
+ * sides, flat corners and short sides; vertices[k][SIDES][2] in the frame. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
-                        double *frame, double *length, double *conic, double *residual, double *oddness, double *vertices,
+                        double *frame, double *length, double *conic, double *residual, double *cost, double *vertices,
                         double *scratch)
 {
     int n = part_end[parts - 1];
@@ -210,31 +231,34 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     }
     Runs r;
     r.n = SAMPLES;
-    r.stiffness = STIFFNESS;
     length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
     double factor[SAMPLES];
     own_scale(z, part_end, parts, length[0], factor);
-    runs_prepare(&r);
     double cap2 = cap * cap;
     conic[5] = fit_round(r.x, r.y, factor, SAMPLES, cap2, conic);
 
     for (int k = 0; k <= SIDES; k++)
-        residual[k] = INFINITY;
+        cost[k] = residual[k] = INFINITY;
     double total[SIDES + 1], polygon[2 * SIDES], odd;
-    int cut[SIDES + 1][SIDES + 1], start = 0;
-    /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin again
-     * from corners found that way. */
-    for (int round = 0; round < 3; round++) {
-        runs_split(&r, start, SIDES, total, cut);
-        for (int k = 3; k <= SIDES; k++) {
-            double s = fit_polygon(&r, factor, start, cut[k], k, cap2, polygon, &odd);
-            if (s < residual[k]) {
-                residual[k] = s;
-                oddness[k] = odd;
-                memcpy(vertices + 2 * SIDES * k, polygon, 2 * k * sizeof *polygon);
+    int cut[SIDES + 1][SIDES + 1];
+    for (int stiff = 0; stiff < 2; stiff++) {
+        r.stiffness = STIFFNESS[stiff];
+        runs_prepare(&r);
+        /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin
+         * again from corners found that way. */
+        int start = 0;
+        for (int round = 0; round < 3; round++) {
+            runs_split(&r, start, SIDES, total, cut);
+            for (int k = 3; k <= SIDES; k++) {
+                double s = fit_polygon(&r, factor, start, cut[k], k, cap2, polygon, &odd);
+                double c = misfit(s, length[0]) + odd;
+                if (c < cost[k]) {
+                    cost[k] = c;
+                    residual[k] = s;
+                    memcpy(vertices + 2 * SIDES * k, polygon, 2 * k * sizeof *polygon);
+                }
             }
+            start = (start + cut[round == 0 ? 5 : 4][2]) % SAMPLES;
         }
-        int k = round == 0 ? 5 : 4, q = round == 0 ? 2 : 2;
-        start = (start + cut[k][q]) % SAMPLES;
     }
 }

@@ -95,7 +95,8 @@ Line runs_line(const Runs *r, int first, int count)
         dx = -dx;
         dy = -dy;
     }
-    Line line = {mx, my, dx, dy, sqrt(12 * most * w), 0, least > 0 ? least : 0};
+    least = least > 0 ? least : 0;
+    Line line = {mx, my, dx, dy, sqrt(12 * most * w), 0, least, least};
     if (count < 4)
         return line;
     double c = 0.5 * (first + z), k = 0.5 * (z - first); /* t = (i - c) / k */
