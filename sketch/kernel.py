@@ -24,7 +24,7 @@ _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _double, _double, *[_
 _open = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _pointer, _pointer)(("ink_open", _lib))
 
 
-_COUNTS = (10, 2, 6, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1))  # of ink_closed's results, in order
+_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1))  # of ink_closed's results, in order
 _OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
 
 
@@ -35,7 +35,8 @@ class ClosedFit(NamedTuple):
         mean: the frame's origin [pixels].  back: (2, 2), pixel = mean + back @ normal.
         ink, gap: lengths of the ink and of the gaps, in the frame.
         conic: a, b, c, d, e of x² + y² = a(x² - y²) + 2bxy + cx + dy + e.
-        round_residual: mean squared distance from it.
+        ellipse_cost: nats to say the ink, given it.
+        circle: centre and radius [pixels].  circle_cost: nats to say the ink, given it.
         residual: of the best k-gon, for k = 0 .. SIDES.
         cost: nats to say the ink, given that polygon.
         corners: in the frame, (SIDES + 1, SIDES, 2).
@@ -46,7 +47,9 @@ class ClosedFit(NamedTuple):
     ink: float
     gap: float
     conic: Array
-    round_residual: float
+    ellipse_cost: float
+    circle: tuple[float, float, float]
+    circle_cost: float
     residual: list[float]
     cost: list[float]
     corners: Array
@@ -82,7 +85,9 @@ def fit_closed(parts: list[Array], least_axis: float, cap: float) -> ClosedFit:
         ink=float(out[length]),
         gap=float(out[length + 1]),
         conic=out[conic : conic + 5],
-        round_residual=float(out[conic + 5]),
+        ellipse_cost=float(out[conic + 5]),
+        circle=(float(out[conic + 6]), float(out[conic + 7]), float(out[conic + 8])),
+        circle_cost=float(out[conic + 9]),
         residual=out[residual:cost].tolist(),
         cost=out[cost:corners].tolist(),
         corners=out[corners:rest].reshape(SIDES + 1, SIDES, 2),

@@ -24,6 +24,8 @@ TREMOR = 0.05  # spread of ink about what was meant, as a share of the radius
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius
 PARAMETER = 4.0  # nats to say one parameter to that precision: ln(page / tremor)
 ROUND = 36.0  # nats that a round outline is less usual than one of no corners and no sides would be
+UNROUND = 0.072  # usual log of a drawn circle's length over its width
+ELLIPSE = 11.0  # nats that an ellipse is said in beyond a circle: two parameters, and that it is rarer
 FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
 BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
@@ -89,8 +91,7 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
     fit = fit_closed(parts, least_axis, CAP)
     names = tuple(sorted({i for i, _ in order}))
     gaps = GAP * OBSERVATIONS * fit.gap / (2 * math.pi)
-    ring = _round(fit, names, gaps)
-    out = [ring] if ring else []
+    out = _round(fit, names, gaps)
     for k in range(3, 13):
         cost = fit.cost[k] + gaps
         vertices = fit.vertices(k)
@@ -105,35 +106,31 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
     return out
 
 
-def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float) -> Fitted | None:
+def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float) -> list[Fitted]:
+    """The circle, and the ellipse: which is a circle too where it is hardly longer than wide, as nobody's are round."""
+    angles = np.linspace(0, 2 * math.pi, 24, endpoint=False)
+    ring = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    x, y, r = fit.circle
+    out = [Fitted("circle", names, fit.circle_cost + ROUND + gaps, np.array([x, y]) + r * ring)]
     a, b, c, d, e = fit.conic.tolist()
     if a * a + b * b > 0.5:  # in this frame whatever is round is nearly a circle
-        return None
+        return out
     m = np.array([[1 - a, -b], [-b, 1 + a]])
     centre = np.linalg.solve(m, np.array([c, d]) / 2)
     level = e + float(centre @ m @ centre)
-    to = np.linalg.inv(fit.back)
     if not 0.2 < level < 5:
-        return None
-    shape = to.T @ m @ to / level  # (p - centre)ᵀ shape (p - centre) = 1, in pixels
-    values, axes = np.linalg.eigh(shape)
+        return out
+    to = np.linalg.inv(fit.back)
+    values, axes = np.linalg.eigh(to.T @ m @ to / level)  # (p - middle)ᵀ shape (p - middle) = 1, in pixels
     radii = 1 / np.sqrt(values)
     middle = fit.mean + fit.back @ centre
-    aspect = math.log(radii[0] / radii[1])
-    cost = _misfit(fit.round_residual, fit.ink) + gaps
-    as_circle = ROUND + 0.5 * (aspect / 0.072) ** 2  # nobody's circles are round
-    as_ellipse = ROUND + 2 * PARAMETER + 3
-    angles = np.linspace(0, 2 * math.pi, 24, endpoint=False)
-    if as_circle <= as_ellipse:
-        r = math.sqrt(radii[0] * radii[1])
-        ring = middle + r * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        return Fitted("circle", names, cost + as_circle, ring, 0, math.sqrt(fit.round_residual))
-    ring = (
-        middle
-        + np.outer(np.cos(angles) * radii[0], axes[:, 0])
-        + np.outer(np.sin(angles) * radii[1], axes[:, 1])
+    longer = math.log(radii[0] / radii[1])
+    cost = fit.ellipse_cost + ROUND + gaps
+    circle = Fitted(
+        "circle", names, cost + 0.5 * (longer / UNROUND) ** 2, middle + math.sqrt(radii[0] * radii[1]) * ring
     )
-    return Fitted("ellipse", names, cost + as_ellipse, ring, len(angles), math.sqrt(fit.round_residual))
+    ellipse = Fitted("ellipse", names, cost + ELLIPSE, middle + (ring * radii) @ axes.T, len(ring))
+    return [min(out[0], circle, key=lambda f: f.cost), ellipse]
 
 
 def _rectangle(fit: ClosedFit, corners: Array) -> tuple[Array, float]:

@@ -48,9 +48,11 @@ static Frame normal_frame(const double *xy, int n, double least_axis)
     return f;
 }
 
+static const double PI = 3.14159265358979323846;
 static const double OBSERVATIONS = 30; /* independent observations in an outline's ink: neighbouring points err together */
 static const double TREMOR = 0.05;     /* spread of ink about what was meant, in the frame: a share of the radius */
 static const double SLOPPY = 0.1;      /* nobody's ink is off by much more than this */
+static const double RETRACE = 1.0;      /* nats an observation of ink that was drawn already */
 static const double BOW = 0.025;    /* usual bow of a straight side, as a share of its length */
 /* (tremor / bow)², while splitting: how much rather a side trembles than bows. Both are tried. */
 static const double STIFFNESS[2] = {0.02, 0.6};
@@ -60,54 +62,57 @@ static const double FLATNESS = 0.12;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
 static const double SHORTNESS = 0.012; /* the spreads say how fast such readings become unlikely */
 
-/* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e: near the unit circle the algebraic distance is the geometric
- * one to first order. Returns the mean squared distance (Sampson's, capped), and the conic. */
-static double fit_round(const double *x, const double *y, const double *factor, int n, double cap2, double conic[5])
+/* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e, or of its circles alone (a = b = 0): near the unit circle the
+ * algebraic distance is the geometric one to first order. Reweighted (Cauchy's weights), so that a pen's hooks and tails do
+ * not pull. Returns the mean squared distance (Sampson's, capped). */
+static double fit_round(const double *x, const double *y, const double *factor, double cap2, int circle, double conic[5])
 {
-    double weight[SAMPLES], distance2[SAMPLES], sum = 0;
-    for (int i = 0; i < n; i++)
+    double weight[SAMPLES], sum = 0;
+    int first = circle ? 2 : 0;
+    for (int i = 0; i < SAMPLES; i++)
         weight[i] = 1;
-    for (int pass = 0; pass < 4; pass++) { /* reweighted, so that a pen's hooks and tails do not pull */
+    for (int pass = 0; pass < 4; pass++) {
         double a[5][6];
         memset(a, 0, sizeof a);
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < SAMPLES; i++) {
             double row[6] = {x[i] * x[i] - y[i] * y[i], 2 * x[i] * y[i], x[i], y[i], 1, x[i] * x[i] + y[i] * y[i]};
-            for (int p = 0; p < 5; p++)
-                for (int q = 0; q < 6; q++)
+            for (int p = first; p < 5; p++)
+                for (int q = p; q < 6; q++)
                     a[p][q] += weight[i] * row[p] * row[q];
         }
-        for (int p = 0; p < 5; p++)
-            a[p][p] += 1e-9 * n;
-        for (int p = 0; p < 5; p++) /* positive definite: no pivoting needed */
+        conic[0] = conic[1] = 0;
+        for (int p = first; p < 5; p++) { /* symmetric and positive definite: elimination without pivots */
+            a[p][p] += 1e-9 * SAMPLES;
             for (int q = p + 1; q < 5; q++) {
-                double f = a[q][p] / a[p][p];
-                for (int t = p; t < 6; t++)
+                double f = a[p][q] / a[p][p];
+                for (int t = q; t < 6; t++)
                     a[q][t] -= f * a[p][t];
             }
-        for (int p = 4; p >= 0; p--) {
+        }
+        for (int p = 4; p >= first; p--) {
             double v = a[p][5];
             for (int q = p + 1; q < 5; q++)
                 v -= a[p][q] * conic[q];
             conic[p] = v / a[p][p];
         }
         sum = 0;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < SAMPLES; i++) {
             double u = x[i] * x[i] + y[i] * y[i] - conic[0] * (x[i] * x[i] - y[i] * y[i]) - conic[1] * 2 * x[i] * y[i] -
                        conic[2] * x[i] - conic[3] * y[i] - conic[4];
             double gx = 2 * x[i] * (1 - conic[0]) - 2 * conic[1] * y[i] - conic[2];
             double gy = 2 * y[i] * (1 + conic[0]) - 2 * conic[1] * x[i] - conic[3];
-            distance2[i] = fmin(u * u / fmax(gx * gx + gy * gy, 1e-6), cap2);
-            sum += distance2[i] * factor[i];
-            weight[i] = 1 / (1 + distance2[i] / (0.06 * 0.06));
+            double d2 = fmin(u * u / fmax(gx * gx + gy * gy, 1e-6), cap2);
+            sum += d2 * factor[i];
+            weight[i] = 1 / (1 + d2 / (0.06 * 0.06));
         }
     }
-    return sum / n;
+    return sum / SAMPLES;
 }
 
 /* Corners of the k-gon whose sides are the runs bounded by `cut` (counted from `start`), and its mean squared distance.
  * Ink that overshoots a corner lies on its side's line: it pays for the length beyond at a quarter. */
 static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double cap2, double *vertices,
-                          double *oddness)
+                          double *oddness, double *perimeter)
 {
     Line side[SIDES], chord[SIDES];
     double drawn[2 * SIDES], turning = 0;
@@ -159,6 +164,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         odd += 0.5 * (bent * bent + flat * flat + brief * brief);
     }
     *oddness = odd;
+    *perimeter = around;
     return sum / r->n;
 }
 
@@ -196,8 +202,29 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
  * on how careless people are. ink: its length in the frame. */
 static double misfit(double mean_square, double ink)
 {
-    double n = OBSERVATIONS * ink / (2 * 3.14159265358979323846);
+    double n = OBSERVATIONS * ink / (2 * PI);
     return 0.5 * n * (log1p(mean_square / (TREMOR * TREMOR)) + mean_square / (SLOPPY * SLOPPY));
+}
+
+/* Nats to say that ink runs along the outline more often than once. */
+static double retraced(double ink, double perimeter)
+{
+    return RETRACE * OBSERVATIONS * fmax(ink - perimeter, 0) / (2 * PI);
+}
+
+/* The ellipse, in the frame, and the circle, in pixels: out as conic (5) and cost, centre (2), radius and cost. */
+static void fit_rounds(const Runs *r, const Frame *f, const double *factor, double ink, double cap2, double out[10])
+{
+    double x[SAMPLES], y[SAMPLES], conic[5], scale = sqrt(fabs(f->back[0] * f->back[3] - f->back[1] * f->back[2]));
+    out[5] = misfit(fit_round(r->x, r->y, factor, cap2, 0, out), ink) + retraced(ink, 2 * PI);
+    for (int i = 0; i < SAMPLES; i++) {
+        x[i] = (f->back[0] * r->x[i] + f->back[1] * r->y[i]) / scale;
+        y[i] = (f->back[2] * r->x[i] + f->back[3] * r->y[i]) / scale;
+    }
+    out[9] = misfit(fit_round(x, y, factor, cap2, 1, conic), ink) + retraced(ink, 2 * PI);
+    out[6] = f->mean[0] + scale * conic[2] / 2;
+    out[7] = f->mean[1] + scale * conic[3] / 2;
+    out[8] = scale * sqrt(fmax(conic[4] + conic[2] * conic[2] / 4 + conic[3] * conic[3] / 4, 0));
 }
 
 /* Fit the readings of a closed chain of ink.
@@ -205,11 +232,10 @@ static double misfit(double mean_square, double ink)
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
  * least_axis: the frame's radii are at least this long [pixels]: below, the pen's own width is what one sees.
  * cap: distances count up to this, in the frame.
- * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; conic: 5 and its mean squared
- * distance; residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed
+ * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds; residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed
  * sides, flat corners and short sides; vertices[k][SIDES][2] in the frame. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
-                        double *frame, double *length, double *conic, double *residual, double *cost, double *vertices,
+                        double *frame, double *length, double *round, double *residual, double *cost, double *vertices,
                         double *scratch)
 {
     int n = part_end[parts - 1];
@@ -235,11 +261,11 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     double factor[SAMPLES];
     own_scale(z, part_end, parts, length[0], factor);
     double cap2 = cap * cap;
-    conic[5] = fit_round(r.x, r.y, factor, SAMPLES, cap2, conic);
+    fit_rounds(&r, &f, factor, length[0], cap2, round);
 
     for (int k = 0; k <= SIDES; k++)
         cost[k] = residual[k] = INFINITY;
-    double total[SIDES + 1], polygon[2 * SIDES], odd;
+    double total[SIDES + 1], polygon[2 * SIDES], odd, around;
     int cut[SIDES + 1][SIDES + 1];
     for (int stiff = 0; stiff < 2; stiff++) {
         r.stiffness = STIFFNESS[stiff];
@@ -250,8 +276,8 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         for (int round = 0; round < 3; round++) {
             runs_split(&r, start, SIDES, total, cut);
             for (int k = 3; k <= SIDES; k++) {
-                double s = fit_polygon(&r, factor, start, cut[k], k, cap2, polygon, &odd);
-                double c = misfit(s, length[0]) + odd;
+                double s = fit_polygon(&r, factor, start, cut[k], k, cap2, polygon, &odd, &around);
+                double c = misfit(s, length[0]) + odd + retraced(length[0], around);
                 if (c < cost[k]) {
                     cost[k] = c;
                     residual[k] = s;
