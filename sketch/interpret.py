@@ -17,6 +17,7 @@ __all__ = ["interpret"]
 Array = NDArray[np.float64]
 
 GRAVITY = 9.81
+NEAR = 1.6  # radii from a pivot's centre to a body that it misses by a slip of the hand
 SMALL = 0.3  # radius of a pivot over the size of what it joins
 PAGE = 10.0  # metres: the longer side of a page without a scale
 # Okabe and Ito's and Tol's muted colours: told apart by colour-blind readers, and by their lightness in print.
@@ -54,8 +55,8 @@ def interpret(
     notes = list(sketch.notes)
     view = _view(sketch, scale)
     ppm = view.pixels_per_metre
-    pivots, balls = _small_circles(readings)
-    solid = [r for r in readings if r.kind in ("circle", "rectangle", "polygon", "bar") and r not in pivots]
+    pivots, doubles = _small_circles(readings)
+    solid = [r for r in readings if r.kind in ("circle", "rectangle", "polygon", "bar") and r not in pivots and r not in doubles]
     drawn = [_drawn(r, k, ppm, _pen(sketch)) for k, r in enumerate(solid)]
     names = {id(d.reading): d.body.id for d in drawn}
     for reading in readings:
@@ -68,7 +69,8 @@ def interpret(
         pair = (ids[0], ids[1]) if len(ids) == 2 else (ids[0], None)
         joints.append(Joint(bodies=pair, position=(float(at[0]) / ppm, -float(at[1]) / ppm)))
         reading.kind = "pivot"
-    del balls
+    for reading in doubles:
+        reading.kind = "pivot"
     arrows = [r for r in readings if r.kind == "gravity"]
     pull = _gravity(arrows, notes) if gravity is None else gravity
     for reading in readings:
@@ -191,7 +193,7 @@ def _small_circles(
     bodies = [r for r in readings if r.kind in ("circle", "rectangle", "polygon", "bar")]
     areas = {id(r): abs(polygon_area(r.outline)) for r in bodies}
     pivots: dict[Reading, tuple[Array, list[Reading]]] = {}
-    balls = []
+    doubles: list[Reading] = []
     for reading in sorted((r for r in bodies if r.kind == "circle"), key=lambda r: areas[id(r)]):
         centre = reading.outline.mean(axis=0)
         radius = float(np.hypot(*(reading.outline - centre).T).mean())
@@ -206,18 +208,21 @@ def _small_circles(
             small = SMALL * (
                 math.sqrt(areas[id(other)]) if other.kind != "bar" else float(np.ptp(line, axis=0).max())
             )
-            if depth < radius and radius < small:
+            if depth < NEAR * radius and radius < small:
                 under.append((depth, other))
         under.sort(key=lambda t: t[0])
+        if not under or under[0][0] > 0:
+            continue  # over no body: a ball
         if len(under) >= 2:
-            pair = [r for _, r in under[:2]]
-            pivots[reading] = (centre, sorted(pair, key=bodies.index))
-        elif len(under) == 1 and under[0][0] < 0:
-            if radius < SMALL / 2 * math.sqrt(areas[id(under[0][1])]):
-                pivots[reading] = (centre, [under[0][1]])
-            else:
-                balls.append(reading)
-    return pivots, balls
+            pair = sorted((r for _, r in under[:2]), key=bodies.index)
+            twin = next((p for p, (at, same) in pivots.items() if same == pair and math.dist(at, centre) < radius), None)
+            if twin is None:
+                pivots[reading] = (centre, pair)
+            else:  # drawn twice
+                doubles.append(reading)
+        elif radius < SMALL / 2 * math.sqrt(areas[id(under[0][1])]):
+            pivots[reading] = (centre, [under[0][1]])
+    return pivots, doubles
 
 
 def _anchor(reading: Reading, drawn: list[_Drawn], notes: list[str]) -> None:

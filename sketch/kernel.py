@@ -18,7 +18,7 @@ SAMPLES, SIDES = 64, 14  # as in core/fit.h
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _double, _double, *[_pointer] * 7)(
+_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _double, _double, _double, *[_pointer] * 7)(
     ("ink_closed", _lib)
 )
 _open = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _pointer, _pointer)(("ink_open", _lib))
@@ -71,13 +71,13 @@ class OpenFit(NamedTuple):
         return self.corners[segments, : segments + 1]
 
 
-def fit_closed(parts: list[Array], least_axis: float, cap: float) -> ClosedFit:
+def fit_closed(parts: list[Array], least_axis: float, cap: float, observations: float) -> ClosedFit:
     """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
     ends = np.cumsum([len(p) for p in parts], dtype=np.int32)
     out = np.empty(_OFFSETS[-1] + 2 * len(xy))
     at = out.ctypes.data
-    _closed(xy.ctypes.data, ends.ctypes.data, len(ends), least_axis, cap, *(at + 8 * o for o in _OFFSETS))
+    _closed(xy.ctypes.data, ends.ctypes.data, len(ends), least_axis, cap, observations, *(at + 8 * o for o in _OFFSETS))
     frame, length, conic, residual, cost, corners, rest = _OFFSETS
     return ClosedFit(
         mean=out[0:2],

@@ -14,6 +14,8 @@ from sketch.kernel import OpenFit, fit_open
 
 __all__ = ["Piece", "cut_into_pieces"]
 
+OBSERVATIONS = 30  # in the ink of a circle's length over its diameter
+
 Array = NDArray[np.float64]
 
 
@@ -61,6 +63,12 @@ class Piece:
     def straight(self) -> float:
         """Root mean square distance from its chord's best line, as a share of its length."""
         return float(np.sqrt(self.fit.residual[1])) / max(self.length, 1e-9)
+
+    @cached_property
+    def observations(self) -> float:
+        """How many independent observations its ink is worth: neighbouring points err together, over a distance that
+        goes with the size of what is drawn."""
+        return OBSERVATIONS * self.length / (math.pi * max(self.extent, 1e-9))
 
     @cached_property
     def scale(self) -> float:

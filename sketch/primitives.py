@@ -19,7 +19,6 @@ __all__ = ["Fitted", "arrow", "bar", "closed", "cross", "unread"]
 
 Array = NDArray[np.float64]
 
-OBSERVATIONS = 30  # independent observations in an outline's ink: neighbouring points err together
 TREMOR = 0.05  # spread of ink about what was meant, as a share of the radius
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius
 PARAMETER = 4.0  # nats to say one parameter to that precision: ln(page / tremor)
@@ -30,7 +29,7 @@ FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
 BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
 RARE = 12.0  # nats that an open line is rarer than an outline
-GAP = 3.0  # nats for each observation that an outline lacks
+GAP = 4.0  # nats for each observation that an outline lacks
 CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
 
 
@@ -57,13 +56,12 @@ class Fitted:
 
 def unread(piece: Piece) -> float:
     """Cost of ink that means nothing: said point by point."""
-    return STRANGE + FREE * OBSERVATIONS * piece.length / (math.pi * max(piece.extent, 1e-9))
+    return STRANGE + FREE * piece.observations
 
 
-def _misfit(mean_square: float, ink: float) -> float:
-    """Nats to say the ink's distances from a primitive; ink: its length in radii."""
-    n = OBSERVATIONS * ink / (2 * math.pi)
-    return 0.5 * n * (math.log1p(mean_square / TREMOR**2) + mean_square / SLOPPY**2)
+def _misfit(mean_square: float, count: float) -> float:
+    """Nats to say `count` observations' distances from a primitive, as `misfit` in core/outline.c."""
+    return 0.5 * count * (math.log1p(mean_square / TREMOR**2) + mean_square / SLOPPY**2)
 
 
 def _misfit_of(piece: Piece, mean_square: float) -> float:
@@ -73,13 +71,7 @@ def _misfit_of(piece: Piece, mean_square: float) -> float:
     line of something large.
     """
     off = mean_square / max(piece.scale, 1e-9) ** 2
-    n = OBSERVATIONS * piece.length / (math.pi * max(piece.extent, 1e-9))
-    return 0.5 * n * (math.log1p(off / TREMOR**2) + off / SLOPPY**2)
-
-
-def _free(ink: float) -> float:
-    """Nats to say ink that no primitive expects; ink: its length in radii."""
-    return FREE * OBSERVATIONS * ink / (2 * math.pi)
+    return 0.5 * piece.observations * (math.log1p(off / TREMOR**2) + off / SLOPPY**2)
 
 
 # ---------------------------------------------------------------- closed outlines
@@ -87,10 +79,11 @@ def _free(ink: float) -> float:
 
 def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float) -> list[Fitted]:
     """Readings of pieces that, one after another (index, reversed), go once around: round or with corners."""
-    parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in order]
-    fit = fit_closed(parts, least_axis, CAP)
     names = tuple(sorted({i for i, _ in order}))
-    gaps = GAP * OBSERVATIONS * fit.gap / (2 * math.pi)
+    count = sum(pieces[i].observations for i in names)
+    parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in order]
+    fit = fit_closed(parts, least_axis, CAP, count)
+    gaps = GAP * count * fit.gap / fit.ink
     out = _round(fit, names, gaps)
     for k in range(3, 13):
         cost = fit.cost[k] + gaps
@@ -101,7 +94,7 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
         if k == 4:
             box, extra = _rectangle(fit, vertices)
             residual = fit.residual[4] + extra
-            cost = fit.cost[4] + _misfit(residual, fit.ink) - _misfit(fit.residual[4], fit.ink) + gaps + 5 * PARAMETER
+            cost = fit.cost[4] + _misfit(residual, count) - _misfit(fit.residual[4], count) + gaps + 5 * PARAMETER
             out.append(Fitted("rectangle", names, cost, box, 4, math.sqrt(residual)))
     return out
 
@@ -271,12 +264,13 @@ def arrow(pieces: list[Piece], names: tuple[int, ...], tail: Array, toward: Arra
     each = (distance**2).reshape(len(names), -1).mean(axis=1).tolist()
     misfit = sum(_misfit_of(pieces[i], square) for i, square in zip(names, each, strict=True))
     mean_square = sum(each) / len(each) / radius**2
-    excess = sum(pieces[i].length for i in names) / radius - (reach + sum(lengths)) / radius  # drawn twice
+    drawn = sum(pieces[i].length for i in names)
+    twice = max(1 - (reach + sum(lengths)) / drawn, 0.0)  # the share of the ink that was drawn twice
     # a head: two barbs alike, at some 35 degrees, less than half as long as the shaft
     likeness = (math.log(lengths[0] / lengths[1]) / 0.35) ** 2
     size = (math.log(sum(lengths) / 2 / reach / 0.45) / 0.4) ** 2
     spread = sum(((a - 0.6) / 0.25) ** 2 for a in angles)
-    cost = 6 * PARAMETER + misfit + _free(max(excess, 0.0)) + 0.5 * (likeness + size + spread)
+    cost = 6 * PARAMETER + misfit + FREE * twice * sum(pieces[i].observations for i in names) + 0.5 * (likeness + size + spread)
     head = tail + u * tip[0] + v * tip[1]
     return Fitted("arrow", names, cost, np.array([tail, head]), 0, math.sqrt(mean_square))
 

@@ -51,10 +51,9 @@ def recognize(
     candidates = _candidates(pieces)
     free = [primitives.unread(p) for p in pieces]
     gains = [sum(free[i] for i in c.pieces) - c.cost for c in candidates]
-    _context(candidates, gains, pieces)
-    live = [k for k, gain in enumerate(gains) if gain > 0]
-    chosen = best_packing([frozenset(candidates[k].pieces) for k in live], [gains[k] for k in live])
-    readings = [_reading(live[k], candidates, gains, pieces) for k in chosen]
+    gains = _with_context(candidates, gains, _best(candidates, gains), pieces)
+    chosen = _best(candidates, gains)
+    readings = [_reading(k, candidates, gains, pieces) for k in chosen]
     readings.sort(key=lambda r: r.strokes)
     read = {s for r in readings for s in r.strokes}
     for i, stroke in enumerate(sketch.strokes):
@@ -71,7 +70,8 @@ def _candidates(pieces: list[Piece]) -> list[Fitted]:
     for i, piece in enumerate(pieces):
         if piece.gap < 0.2 * piece.length:
             fits = primitives.closed(pieces, [(i, False)], least_axis)
-            if min(f.cost for f in fits) < 0.6 * primitives.unread(piece):
+            loop = piece.scale > 0.2 * piece.extent
+            if loop or min(f.cost for f in fits) < 0.6 * primitives.unread(piece):
                 complete.add(i)
     for chain in group.closing_chains(pieces, complete):
         out += primitives.closed(pieces, chain, least_axis)
@@ -90,10 +90,19 @@ def _candidates(pieces: list[Piece]) -> list[Fitted]:
     return out
 
 
-def _context(candidates: list[Fitted], gains: list[float], pieces: list[Piece]) -> None:
-    """What stands around a reading, told last: it decides between readings that are nearly equal."""
+def _best(candidates: list[Fitted], gains: list[float]) -> list[int]:
+    live = [k for k, gain in enumerate(gains) if gain > 0]
+    chosen = best_packing([frozenset(candidates[k].pieces) for k in live], [gains[k] for k in live])
+    return [live[k] for k in chosen]
+
+
+def _with_context(
+    candidates: list[Fitted], gains: list[float], chosen: list[int], pieces: list[Piece]
+) -> list[float]:
+    """The gains, given the bodies that the ink alone makes likely: context is told last and decides what is close."""
+    gains = list(gains)
     solid = ("circle", "ellipse", "rectangle", "polygon")
-    bodies = [c for k, c in enumerate(candidates) if gains[k] > 0 and c.kind in solid]
+    bodies = [candidates[k] for k in chosen if candidates[k].kind in solid]
     lo = np.min([p.box[:2] for p in pieces], axis=0)
     hi = np.max([p.box[2:] for p in pieces], axis=0)
     dot = DOT * float(np.hypot(*(hi - lo)))
@@ -125,6 +134,7 @@ def _context(candidates: list[Fitted], gains: list[float], pieces: list[Piece]) 
             ]
             if len({b.pieces for b in under}) > 1:
                 gains[k] += ANCHORS
+    return gains
 
 
 def _reading(k: int, candidates: list[Fitted], gains: list[float], pieces: list[Piece]) -> Reading:

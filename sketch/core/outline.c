@@ -49,7 +49,6 @@ static Frame normal_frame(const double *xy, int n, double least_axis)
 }
 
 static const double PI = 3.14159265358979323846;
-static const double OBSERVATIONS = 30; /* independent observations in an outline's ink: neighbouring points err together */
 static const double TREMOR = 0.05;     /* spread of ink about what was meant, in the frame: a share of the radius */
 static const double SLOPPY = 0.1;      /* nobody's ink is off by much more than this */
 static const double RETRACE = 1.0;      /* nats an observation of ink that was drawn already */
@@ -198,30 +197,54 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
     }
 }
 
-/* Nats to say the ink's distances from an outline: Student's t for the tremor, unknown but about TREMOR, and a normal prior
- * on how careless people are. ink: its length in the frame. */
-static double misfit(double mean_square, double ink)
+/* What is missing of the outline between the end of part p and the beginning of the next: none where they overlap, that is
+ * where the next begins behind the pen. */
+static double gap_after(const double *z, const int32_t *part_end, int parts, int p)
 {
-    double n = OBSERVATIONS * ink / (2 * PI);
+    int begin = p ? part_end[p - 1] : 0, last = part_end[p] - 1;
+    int next = p + 1 < parts ? part_end[p] : 0, stop = p + 1 < parts ? part_end[p + 1] : part_end[0];
+    double gx = z[2 * next] - z[2 * last], gy = z[2 * next + 1] - z[2 * last + 1], g = hypot(gx, gy), most = 0;
+    if (g < 1e-9)
+        return 0;
+    for (int side = 0; side < 2; side++) { /* the pen's way over the last, and the next, stretch as long as the gap */
+        int i = side ? next : last, end = side ? stop - 1 : begin, step = side ? 1 : -1;
+        double x = 0, y = 0, l = 0;
+        while (i != end && l < g) {
+            x = z[2 * (i + step)] - z[2 * (side ? next : last)];
+            y = z[2 * (i + step) + 1] - z[2 * (side ? next : last) + 1];
+            l = hypot(x, y);
+            i += step;
+        }
+        if (l > 0)
+            most = fmax(most, step * (x * gx + y * gy) / (l * g));
+    }
+    return g * most;
+}
+
+/* Nats to say the ink's distances from an outline: Student's t for the tremor, unknown but about TREMOR, and a normal prior
+ * on how careless people are. n: independent observations, as neighbouring points err together. */
+static double misfit(double mean_square, double n)
+{
     return 0.5 * n * (log1p(mean_square / (TREMOR * TREMOR)) + mean_square / (SLOPPY * SLOPPY));
 }
 
 /* Nats to say that ink runs along the outline more often than once. */
-static double retraced(double ink, double perimeter)
+static double retraced(double ink, double perimeter, double n)
 {
-    return RETRACE * OBSERVATIONS * fmax(ink - perimeter, 0) / (2 * PI);
+    return RETRACE * n * fmax(1 - perimeter / fmax(ink, 1e-9), 0);
 }
 
 /* The ellipse, in the frame, and the circle, in pixels: out as conic (5) and cost, centre (2), radius and cost. */
-static void fit_rounds(const Runs *r, const Frame *f, const double *factor, double ink, double cap2, double out[10])
+static void fit_rounds(const Runs *r, const Frame *f, const double *factor, double ink, double n, double cap2,
+                       double out[10])
 {
     double x[SAMPLES], y[SAMPLES], conic[5], scale = sqrt(fabs(f->back[0] * f->back[3] - f->back[1] * f->back[2]));
-    out[5] = misfit(fit_round(r->x, r->y, factor, cap2, 0, out), ink) + retraced(ink, 2 * PI);
+    out[5] = misfit(fit_round(r->x, r->y, factor, cap2, 0, out), n) + retraced(ink, 2 * PI, n);
     for (int i = 0; i < SAMPLES; i++) {
         x[i] = (f->back[0] * r->x[i] + f->back[1] * r->y[i]) / scale;
         y[i] = (f->back[2] * r->x[i] + f->back[3] * r->y[i]) / scale;
     }
-    out[9] = misfit(fit_round(x, y, factor, cap2, 1, conic), ink) + retraced(ink, 2 * PI);
+    out[9] = misfit(fit_round(x, y, factor, cap2, 1, conic), n) + retraced(ink, 2 * PI, n);
     out[6] = f->mean[0] + scale * conic[2] / 2;
     out[7] = f->mean[1] + scale * conic[3] / 2;
     out[8] = scale * sqrt(fmax(conic[4] + conic[2] * conic[2] / 4 + conic[3] * conic[3] / 4, 0));
@@ -231,10 +254,11 @@ static void fit_rounds(const Runs *r, const Frame *f, const double *factor, doub
  *
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
  * least_axis: the frame's radii are at least this long [pixels]: below, the pen's own width is what one sees.
+ * observations: how many independent ones the ink is worth.
  * cap: distances count up to this, in the frame.
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds; residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed
  * sides, flat corners and short sides; vertices[k][SIDES][2] in the frame. */
-INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
+INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap, double observations,
                         double *frame, double *length, double *round, double *residual, double *cost, double *vertices,
                         double *scratch)
 {
@@ -250,18 +274,15 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         z[2 * i + 1] = f.to[2] * dx + f.to[3] * dy;
     }
     length[1] = 0;
-    for (int p = 0, first = 0; p < parts; first = part_end[p++]) {
-        int last = part_end[p] - 1, next = p + 1 < parts ? part_end[p] : 0;
-        (void)first;
-        length[1] += hypot(z[2 * last] - z[2 * next], z[2 * last + 1] - z[2 * next + 1]);
-    }
+    for (int p = 0; p < parts; p++)
+        length[1] += gap_after(z, part_end, parts, p);
     Runs r;
     r.n = SAMPLES;
     length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
     double factor[SAMPLES];
     own_scale(z, part_end, parts, length[0], factor);
     double cap2 = cap * cap;
-    fit_rounds(&r, &f, factor, length[0], cap2, round);
+    fit_rounds(&r, &f, factor, length[0], observations, cap2, round);
 
     for (int k = 0; k <= SIDES; k++)
         cost[k] = residual[k] = INFINITY;
@@ -277,7 +298,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
             runs_split(&r, start, SIDES, total, cut);
             for (int k = 3; k <= SIDES; k++) {
                 double s = fit_polygon(&r, factor, start, cut[k], k, cap2, polygon, &odd, &around);
-                double c = misfit(s, length[0]) + odd + retraced(length[0], around);
+                double c = misfit(s, observations) + odd + retraced(length[0], around, observations);
                 if (c < cost[k]) {
                     cost[k] = c;
                     residual[k] = s;
