@@ -194,7 +194,7 @@ def _small_circles(
     areas = {id(r): abs(polygon_area(r.outline)) for r in bodies}
     pivots: dict[Reading, tuple[Array, list[Reading]]] = {}
     doubles: list[Reading] = []
-    for reading in sorted((r for r in bodies if r.kind == "circle"), key=lambda r: areas[id(r)]):
+    for reading in sorted((r for r in bodies if r.kind == "circle"), key=lambda r: -areas[id(r)]):
         centre = reading.outline.mean(axis=0)
         radius = float(np.hypot(*(reading.outline - centre).T).mean())
         under = []

@@ -197,28 +197,28 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
     }
 }
 
-/* What is missing of the outline between the end of part p and the beginning of the next: none where they overlap, that is
- * where the next begins behind the pen. */
+/* Squared distance from point `to` to the ink from point `from` on, in steps of `step`, as far as `reach` goes. */
+static double nearest2(const double *z, int to, int from, int end, int step, double reach)
+{
+    double best = INFINITY, done = 0;
+    for (int i = from; i != end && done < reach; i += step) {
+        const double *a = z + 2 * i, *b = z + 2 * (i + step);
+        best = fmin(best, segment_distance2(z[2 * to], z[2 * to + 1], a, b));
+        done += hypot(b[0] - a[0], b[1] - a[1]);
+    }
+    return best;
+}
+
+/* What is missing of the outline between the end of part p and the beginning of the next: nothing where one runs on along
+ * the other, little where they cross at a corner. */
 static double gap_after(const double *z, const int32_t *part_end, int parts, int p)
 {
     int begin = p ? part_end[p - 1] : 0, last = part_end[p] - 1;
     int next = p + 1 < parts ? part_end[p] : 0, stop = p + 1 < parts ? part_end[p + 1] : part_end[0];
-    double gx = z[2 * next] - z[2 * last], gy = z[2 * next + 1] - z[2 * last + 1], g = hypot(gx, gy), most = 0;
-    if (g < 1e-9)
-        return 0;
-    for (int side = 0; side < 2; side++) { /* the pen's way over the last, and the next, stretch as long as the gap */
-        int i = side ? next : last, end = side ? stop - 1 : begin, step = side ? 1 : -1;
-        double x = 0, y = 0, l = 0;
-        while (i != end && l < g) {
-            x = z[2 * (i + step)] - z[2 * (side ? next : last)];
-            y = z[2 * (i + step) + 1] - z[2 * (side ? next : last) + 1];
-            l = hypot(x, y);
-            i += step;
-        }
-        if (l > 0)
-            most = fmax(most, step * (x * gx + y * gy) / (l * g));
-    }
-    return g * most;
+    double gx = z[2 * next] - z[2 * last], gy = z[2 * next + 1] - z[2 * last + 1], g2 = gx * gx + gy * gy;
+    double reach = 2 * sqrt(g2);
+    g2 = fmin(g2, nearest2(z, next, last, begin, -1, reach));
+    return sqrt(fmin(g2, nearest2(z, last, next, stop - 1, 1, reach)));
 }
 
 /* Nats to say the ink's distances from an outline: Student's t for the tremor, unknown but about TREMOR, and a normal prior
