@@ -403,7 +403,7 @@ def scene_json(scene: dict[str, Any]) -> str:
     return "{" + ",\n ".join(parts) + "}\n"
 
 
-PICTURES = {"pendulum-on-paper.jpg": ("pendulum", "photo"), "ramp-on-paper.png": ("ramp", "scan")}
+PICTURES = {"pendulum-on-paper.jpg": ("pendulum", "photo"), "linkage-on-paper.png": ("linkage", "scan")}
 
 
 def files() -> dict[str, str]:
