@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import json
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
-__all__ = ["InputError", "from_msgspec", "kind_of_value", "parse_json"]
+__all__ = ["InputError", "convert", "kind_of_value", "parse_json"]
+
+T = TypeVar("T")
 
 MAX_BYTES = 16 << 20  # a scene of 50,000 bodies
 
@@ -61,7 +63,20 @@ def _not_json(data: bytes | str, cause: Exception) -> InputError:
     return InputError("", f"not JSON: {cause}")
 
 
-def from_msgspec(e: msgspec.ValidationError) -> InputError:
+def convert(value: Any, to: type[T]) -> T:
+    """JSON's objects as a struct. numpy's numbers and arrays are taken too. Raises InputError with the path."""
+    try:
+        return msgspec.convert(value, to)
+    except msgspec.ValidationError:
+        with contextlib.suppress(TypeError, ValueError, AttributeError, RecursionError):
+            value = json.loads(json.dumps(value, default=lambda v: v.tolist()))
+    try:
+        return msgspec.convert(value, to)
+    except msgspec.ValidationError as e:
+        raise _with_path(e) from None
+
+
+def _with_path(e: msgspec.ValidationError) -> InputError:
     """msgspec's 'Expected `float`, got `str` - at `$.bodies[0].angle`' as path and problem."""
     text, _, path = str(e).partition(" - at `")
     path = path.rstrip("`").removeprefix("$").removeprefix(".")

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import msgspec
 
-from sim.json_input import InputError, from_msgspec, kind_of_value, parse_json
+from sim.json_input import InputError, convert, kind_of_value, parse_json
 
 __all__ = ["Body", "Circle", "InputError", "Joint", "Polygon", "Rectangle", "Scene", "View", "parse_json"]
 
@@ -162,10 +162,7 @@ class Scene(msgspec.Struct, kw_only=True):
             raise InputError(
                 "bodies", "missing", "a scene has a list of bodies, each with id, shape and position"
             )
-        try:
-            scene = msgspec.convert(d, cls)
-        except msgspec.ValidationError as e:
-            raise from_msgspec(e) from None
+        scene = convert(d, cls)
         _keep_unknown_keys(scene, d)
         scene.check()
         for body in scene.bodies:
