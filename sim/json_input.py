@@ -64,7 +64,7 @@ def _not_json(data: bytes | str, cause: Exception) -> InputError:
 
 
 def convert(value: Any, to: type[T]) -> T:
-    """JSON's objects as a struct. numpy's numbers and arrays are taken too. Raises InputError with the path."""
+    """JSON's objects as a struct, numpy's numbers and arrays too. Raises InputError with the path."""
     try:
         return msgspec.convert(value, to)
     except msgspec.ValidationError:

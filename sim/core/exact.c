@@ -170,7 +170,6 @@ static bool is_over_budget(Exact *e, double time) {
 static int hand_over_all(Exact *e, double time) {
     int status = SIM_OK;
     e->world->profile.budget_spent += 1;
-    e->spent = 0;
     system_clear(&e->group);
     for (int32_t i = 1; i < e->world->body_count && status == SIM_OK; i++)
         if (is_tracked(e, i) && e->world->body[i].mode != MODE_REST && e->track[i].touch_time < e->end)
@@ -294,6 +293,7 @@ int exact_after_crowd(Exact *e, int32_t body, double from, double to) {
     record_state(e->recorder, body, to);
     if (mode == MODE_FLIGHT && is_over_budget(e, to)) e->world->body[body].mode = mode = MODE_CROWD;
     if (mode == MODE_CROWD) return SIM_OK;
+    if (mode == MODE_FLIGHT) e->spent += e->world->body_count; /* what looking for its touches will cost */
     State state = body_state(&e->world->body[body]);
     *track = (Track){.motion = mode == MODE_REST ? motion_at_rest(&state, to)
                                                  : motion_in_flight(&state, to, e->world->gravity),
