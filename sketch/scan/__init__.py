@@ -11,7 +11,7 @@ from sketch.ink import Sketch, Stroke
 from sketch.scan.binding import thin, trace
 from sketch.scan.decode import decode, is_picture
 from sketch.scan.graph import build_graph
-from sketch.scan.page import ink_mask, read_page
+from sketch.scan.page import fill_pinholes, ink_mask, read_page
 from sketch.scan.rings import find_rings, take_rings
 from sketch.scan.strokes import trace_strokes
 
@@ -57,6 +57,8 @@ def trace_picture(picture: NDArray[Any]) -> list[NDArray[np.float64]]:
             break
         work = cv2.resize(work, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
         scale *= 2
+    if fill_pinholes(mask, pen):
+        skeleton, count = thin(mask)
     distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     graph = build_graph(trace(skeleton, count), distance, pen)
     rings = take_rings(graph, find_rings(mask, distance, pen), pen)

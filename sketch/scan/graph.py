@@ -47,6 +47,10 @@ class Graph:
                     out[edge.ends[side]].append((e, side))
         return out
 
+    def node(self, end: End) -> int:
+        """The node at an end of an edge, -1 where it is free, -2 on a ring."""
+        return self.edges[end[0]].ends[end[1]]
+
     def outward(self, end: End) -> Points:
         """An edge's points, from this end on."""
         points = self.edges[end[0]].points

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.graph import SIGHT, End, Graph, heading
 
-__all__ = ["Branch", "Junction", "find_junctions"]
+__all__ = ["Branch", "Junction", "find_junctions", "turn_cost"]
 
 Points = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class Branch:
     centre: Points
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Junction:
     """branches, the pairs of them that continue each other, and the edges that are ink of several."""
 
@@ -139,7 +139,7 @@ def _share_bridges(
     return junctions
 
 
-def _turn_cost(a: Branch, b: Branch) -> float:
+def turn_cost(a: Branch, b: Branch) -> float:
     """The square of the angle by which the pen turns on its way from a to b: at once, and on the way."""
     turn = _angle(-a.outward, b.outward)
     gap = b.start - a.start
@@ -156,7 +156,7 @@ def _angle(u: Points, v: Points) -> float:
 def _pair(branches: list[Branch]) -> tuple[float, list[tuple[int, int]]]:
     """The cheapest set of pairs, an unpaired branch costing LONELY, and what it costs."""
     count = len(branches)
-    cost = {(i, j): _turn_cost(branches[i], branches[j]) for i, j in combinations(range(count), 2)}
+    cost = {(i, j): turn_cost(branches[i], branches[j]) for i, j in combinations(range(count), 2)}
     if count > KNOT:
         return _pair_greedily(cost, count)
 

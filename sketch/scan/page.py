@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Page", "ink_mask", "read_page"]
+__all__ = ["Page", "fill_pinholes", "ink_mask", "read_page"]
 
 Image = NDArray[Any]  # uint8
 
@@ -19,6 +19,7 @@ TABLE = 0.5  # what is not as bright as this share of the paper is not paper
 MARGIN = REDUCED + 2  # [pixels] along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
+PINHOLE = 1.0  # squares of the pen width: a ring around a smaller hole is a blot
 FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
 NOTABLE = 0.03  # of the picture's size: pieces smaller than this do not say how dark the ink is
 
@@ -149,3 +150,16 @@ def ink_mask(page: Page, reach: int) -> Image:
     keep = (strength >= FAINT * full) & (span >= 2 * reach)
     keep[0] = False
     return np.asarray(keep.astype(np.uint8)[labels])
+
+
+def fill_pinholes(mask: Image, pen: float) -> bool:
+    """Fill the holes, in place, that are too small for a pen `pen` pixels wide to have gone around them."""
+    import cv2
+
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(1 - mask, connectivity=4)
+    tiny = stats[:, cv2.CC_STAT_AREA] < PINHOLE * pen * pen
+    tiny[0] = False  # the ink itself
+    if not tiny.any():
+        return False
+    mask |= tiny.astype(np.uint8)[labels]
+    return True

@@ -21,7 +21,7 @@ Points = NDArray[np.float64]
 SMALLEST, LARGEST = 1.4, 4.5  # pen widths: the radius of the ring that the pen's middle went along
 RAYS = 48  # directions in which the belt is looked for
 DRAWN = 0.9  # the share of the rays that must meet the belt
-OUT_OF_ROUND = 0.12  # deviation from a circle, a share of its radius: a square has 0.11, a triangle 0.24
+OUT_OF_ROUND = 0.09  # deviation from a circle, a share of its radius: a square has 0.11, a triangle 0.24
 OPEN = 0.5  # the share of the rays beyond the belt that must meet paper: a ring stands out from a scribble
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 

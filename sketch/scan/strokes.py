@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.scan.courses import Course, Links, close_outlines, follow, length
 from sketch.scan.graph import End, Graph
 from sketch.scan.junctions import Branch, Junction, find_junctions
 
@@ -20,47 +20,30 @@ CRUMB = 2.0  # pen widths: a piece shorter than this that starts at other ink is
 OWN_INK = 0.5  # and the lender has at least this much other ink, as a share of what it lends
 
 
-@dataclass(eq=False)
-class Course:
-    """A stroke as a course over the graph: edges by the end at which they are entered.
-
-    via: [pixels] the ink that lies between an edge and the next one, where they share it with others.
-    borrowed: the way from the last end back to the first over other strokes' ink, or None.
-    """
-
-    steps: list[End]
-    via: list[Points] = field(default_factory=list)
-    closed: bool = False
-    borrowed: Points | None = None
-
-
 def trace_strokes(graph: Graph, pen: float) -> list[Points]:
     """The strokes of a graph [pixels], each shape (n, 2). pen: the width of the pen [pixels]."""
     junctions = find_junctions(graph, pen)
     branch_of = {branch.end: branch for junction in junctions for branch in junction.branches}
     inner = {e for junction in junctions for e in junction.bridges}
-    links: dict[End, tuple[End, Points]] = {}
+    close_outlines(graph, junctions, inner, pen)
+    links: Links = {}
     for junction in junctions:
         for i, j in junction.pairs:
             a, b = junction.branches[i], junction.branches[j]
-            via = _way(graph, junction, a, b, pen)
+            via = _way(graph, junction, a, b)
             links[a.end], links[b.end] = (b.end, via), (a.end, via[::-1])
-    courses = _follow(graph, links, inner)
+    courses = follow(graph, links, inner)
     for course in courses:
         _borrow(graph, course, courses, inner)
     kept = [course for course in courses if not _is_crumb(graph, course, pen)]
     return [_points(graph, course, branch_of, links) for course in kept]
 
 
-def _way(graph: Graph, junction: Junction, a: Branch, b: Branch, pen: float) -> Points:
+def _way(graph: Graph, junction: Junction, a: Branch, b: Branch) -> Points:
     """The ink between two branches of a junction that has a long bridge; none where they cross at a point."""
     if not junction.bridges or np.hypot(*(a.centre - b.centre)) < 1e-9:
         return np.empty((0, 2))
-    return _shortest(graph, _node(graph, a.end), _node(graph, b.end), np.inf, only=set(junction.bridges))[0]
-
-
-def _node(graph: Graph, end: End) -> int:
-    return graph.edges[end[0]].ends[end[1]]
+    return _shortest(graph, graph.node(a.end), graph.node(b.end), np.inf, only=set(junction.bridges))[0]
 
 
 def _shortest(
@@ -97,38 +80,10 @@ def _shortest(
     return np.empty((0, 2)), []
 
 
-def _follow(graph: Graph, links: dict[End, tuple[End, Points]], inner: set[int]) -> list[Course]:
-    """Follow the links from edge to edge: first from ends, then around what closes on itself."""
-    done, courses = set(inner), []
-    ends = [(e, side) for e in range(len(graph.edges)) for side in (0, 1)]
-    for begin in [end for end in ends if end not in links] + ends:
-        if begin[0] in done:
-            continue
-        course, at = Course([]), begin
-        while at[0] not in done:
-            done.add(at[0])
-            course.steps.append(at)
-            leave = (at[0], 1 - at[1])
-            if leave not in links:
-                break
-            at, via = links[leave]
-            course.via.append(via)
-        else:
-            course.closed = True
-        if graph.edges[begin[0]].ends == (-2, -2):
-            course.closed = True
-        courses.append(course)
-    return courses
-
-
 def _is_crumb(graph: Graph, course: Course, pen: float) -> bool:
     """Whether a course lies within the ink of the junctions at its ends."""
-    ends = (_node(graph, course.steps[0]), _node(graph, (course.steps[-1][0], 1 - course.steps[-1][1])))
-    return not course.closed and max(ends) >= 0 and _length(graph, course) < CRUMB * pen
-
-
-def _length(graph: Graph, course: Course) -> float:
-    return sum(graph.edges[e].length for e, _ in course.steps)
+    ends = (graph.node(course.steps[0]), graph.node((course.steps[-1][0], 1 - course.steps[-1][1])))
+    return not course.closed and max(ends) >= 0 and length(graph, course) < CRUMB * pen
 
 
 def _borrow(graph: Graph, course: Course, courses: list[Course], inner: set[int]) -> None:
@@ -140,24 +95,22 @@ def _borrow(graph: Graph, course: Course, courses: list[Course], inner: set[int]
     if course.closed or not course.steps:
         return
     head, tail = course.steps[0], (course.steps[-1][0], 1 - course.steps[-1][1])
-    a, b = _node(graph, head), _node(graph, tail)
+    a, b = graph.node(head), graph.node(tail)
     if a < 0 or b < 0:
         return
     own = {e for e, _ in course.steps}
-    way, edges = _shortest(graph, b, a, SHARED_SIDE * _length(graph, course), without=own)
+    way, edges = _shortest(graph, b, a, SHARED_SIDE * length(graph, course), without=own)
     if a != b and not edges:
         return
     lent = sum(graph.edges[e].length for e in edges)
     for lender in courses:
         shared = [e for e, _ in lender.steps if e in edges]
-        if shared and _length(graph, lender) - sum(graph.edges[e].length for e in shared) < OWN_INK * lent:
+        if shared and length(graph, lender) - sum(graph.edges[e].length for e in shared) < OWN_INK * lent:
             return
     course.borrowed = way
 
 
-def _points(
-    graph: Graph, course: Course, branch_of: dict[End, Branch], links: dict[End, tuple[End, Points]]
-) -> Points:
+def _points(graph: Graph, course: Course, branch_of: dict[End, Branch], links: Links) -> Points:
     pieces = []
     for k, step in enumerate(course.steps):
         pieces.append(_trimmed(graph, step, branch_of, links))
@@ -170,9 +123,7 @@ def _points(
     return np.concatenate(pieces)
 
 
-def _trimmed(
-    graph: Graph, begin: End, branch_of: dict[End, Branch], links: dict[End, tuple[End, Points]]
-) -> Points:
+def _trimmed(graph: Graph, begin: End, branch_of: dict[End, Branch], links: Links) -> Points:
     """An edge's points from one end to the other, without what thinning bent at its junctions."""
     points = graph.outward(begin)
     finish = (begin[0], 1 - begin[1])
