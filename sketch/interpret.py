@@ -17,7 +17,7 @@ __all__ = ["interpret"]
 Array = NDArray[np.float64]
 
 GRAVITY = 9.81
-NEAR = 1.6  # radii from a pivot's centre to a body that it misses by a slip of the hand
+NEAR = 2.5  # radii from a pivot's centre to a body that it misses by a slip of the hand
 SMALL = 0.3  # radius of a pivot over the size of what it joins
 PAGE = 10.0  # metres: the longer side of a page without a scale
 # Okabe and Ito's and Tol's muted colours: told apart by colour-blind readers, and by their lightness in print.
@@ -215,6 +215,8 @@ def _small_circles(
             continue  # over no body: a ball
         if len(under) >= 2:
             pair = sorted((r for _, r in under[:2]), key=bodies.index)
+            if under[1][0] > 0 and not _meet(pair[0].outline, pair[1].outline, centre, radius):
+                continue
             twin = next((p for p, (at, same) in pivots.items() if same == pair and math.dist(at, centre) < radius), None)
             if twin is None:
                 pivots[reading] = (centre, pair)
@@ -223,6 +225,14 @@ def _small_circles(
         elif radius < SMALL / 2 * math.sqrt(areas[id(under[0][1])]):
             pivots[reading] = (centre, [under[0][1]])
     return pivots, doubles
+
+
+def _meet(a: Array, b: Array, at: Array, radius: float) -> bool:
+    """Whether two outlines overlap, or all but touch, near a point."""
+    steps = np.linspace(0, 1, 64, endpoint=False)[:, None, None]
+    dense = (a + steps * (np.roll(a, -1, axis=0) - a)).reshape(-1, 2)
+    close = dense[np.hypot(*(dense - at).T) < 5 * radius]
+    return any(inside(p, b) or distance(p, b) < radius for p in close)
 
 
 def _anchor(reading: Reading, drawn: list[_Drawn], notes: list[str]) -> None:

@@ -7,7 +7,7 @@ parameters, plus what it then takes to say where the ink is, given the primitive
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ PARAMETER = 4.0  # nats to say one parameter to that precision: ln(page / tremor
 ROUND = 36.0  # nats that a round outline is less usual than one of no corners and no sides would be
 UNROUND = 0.085  # usual log of a drawn circle's length over its width
 ELLIPSE = 11.0  # nats that an ellipse is said in beyond a circle: two parameters, and that it is rarer
+RETRACE = 1.0  # nats an observation of ink that was drawn already, as in core/outline.c
 FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
 BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
@@ -44,6 +45,7 @@ class Fitted:
         outline: [pixels], as in `sketch.recognize.Reading`.
         sides: of a polygon, else 0.
         residual: root mean square distance of the ink [share of the radius].
+        scale: of a closed outline: the geometric mean of its half axes [pixels].
     """
 
     kind: str
@@ -52,6 +54,7 @@ class Fitted:
     outline: Array
     sides: int = 0
     residual: float = 0.0
+    scale: float = 0.0
 
 
 def unread(piece: Piece) -> float:
@@ -96,7 +99,27 @@ def closed(pieces: list[Piece], order: list[tuple[int, bool]], least_axis: float
             residual = fit.residual[4] + extra
             cost = fit.cost[4] + _misfit(residual, count) - _misfit(fit.residual[4], count) + gaps + 5 * PARAMETER
             out.append(Fitted("rectangle", names, cost, box, 4, math.sqrt(residual)))
-    return out
+    scale = math.sqrt(abs(float(np.linalg.det(fit.back))))
+    return [replace(f, scale=scale) for f in out]
+
+
+def absorb(fitted: Fitted, pieces: list[Piece], index: int) -> float:
+    """Nats to say a further piece of ink, given that it runs along a closed outline that is there already.
+
+    Sides are drawn twice, in pieces that overlap, or gone over once more.
+    """
+    piece = pieces[index]
+    reach = 0.3 * fitted.scale
+    lo, hi = fitted.outline.min(axis=0) - reach, fitted.outline.max(axis=0) + reach
+    box = piece.box
+    if box[0] < lo[0] or box[1] < lo[1] or box[2] > hi[0] or box[3] > hi[1]:
+        return math.inf
+    ends = np.roll(fitted.outline, -1, axis=0)
+    off = np.minimum.reduce(
+        [_from_segment(piece.fit.samples, a, b) for a, b in zip(fitted.outline, ends, strict=True)]
+    )
+    mean_square = float((off * off).mean()) / min(fitted.scale, max(piece.scale, 1e-9)) ** 2
+    return PARAMETER + RETRACE * piece.observations + _misfit(mean_square, piece.observations)
 
 
 def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float) -> list[Fitted]:

@@ -8,7 +8,7 @@ piece of ink in at most one, with the greatest total gain: no other set describe
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -74,7 +74,9 @@ def _candidates(pieces: list[Piece]) -> list[Fitted]:
             if loop or min(f.cost for f in fits) < 0.6 * primitives.unread(piece):
                 complete.add(i)
     for chain in group.closing_chains(pieces, complete):
-        out += primitives.closed(pieces, chain, least_axis)
+        found = primitives.closed(pieces, chain, least_axis)
+        out += found
+        out += _gone_over(found, pieces)
     for i, piece in enumerate(pieces):
         line = primitives.bar(i, piece)
         if line:
@@ -88,6 +90,21 @@ def _candidates(pieces: list[Piece]) -> list[Fitted]:
         if found:
             out.append(found)
     return out
+
+
+def _gone_over(found: list[Fitted], pieces: list[Piece]) -> list[Fitted]:
+    """The readings of a chain with the other pieces that run along its outline as drawn once more."""
+    best = min(found, key=lambda f: f.cost)
+    costs = {j: primitives.absorb(best, pieces, j) for j in range(len(pieces)) if j not in best.pieces}
+    again = [j for j, cost in costs.items() if cost < primitives.unread(pieces[j])]
+    if not again:
+        return []
+    sets = [again] if len(again) == 1 else [again, *([j] for j in again)]
+    return [
+        replace(f, pieces=tuple(sorted((*f.pieces, *more))), cost=f.cost + sum(costs[j] for j in more))
+        for f in found
+        for more in sets
+    ]
 
 
 def _best(candidates: list[Fitted], gains: list[float]) -> list[int]:
