@@ -183,7 +183,7 @@ def test_one_wheel_serves_every_python(backend: ModuleType) -> None:
 
 
 @pytest.mark.slow
-def test_the_wheel_holds_the_libraries_and_no_sources(tmp_path: Path) -> None:
+def test_the_wheel_holds_all_that_runs_and_no_sources(tmp_path: Path) -> None:
     import zipfile
 
     tree = tmp_path / "tree"
@@ -198,4 +198,11 @@ def test_the_wheel_holds_the_libraries_and_no_sources(tmp_path: Path) -> None:
         "sim/_core",
         "sketch/_ink",
     }
+    runs = {
+        p
+        for package in PACKAGES
+        for p in (ROOT / package).rglob("*")
+        if p.suffix in (".py", ".js", ".css", ".html")
+    }
+    assert {str(p.relative_to(ROOT)) for p in runs} <= names
     assert {n for n in names if n.endswith((".c", ".h")) or n.startswith(("tests", "samples"))} == set()
