@@ -20,7 +20,8 @@ from sketch import load_sketch, recognize
 
 SKETCHES = 180
 RIGHT = {"strokes": 0.85, "scan": 0.70}  # share of whole sketches, at least
-EXACT = {"S1_": 1e-9, "S2_": 1e-9}  # error [m], at most
+EXACT = {"S1_": 1e-9, "S2_": 1e-9, "S9_": 1e-5}  # error [m] at tolerance 1e-6, at most
+ELSE = 1e-6
 
 
 def run(*command: object) -> str:
@@ -67,10 +68,14 @@ def recognition(corpus: Path, work: Path) -> dict[str, float]:
     return rates
 
 
-def errors(physics: Path, case: str) -> list[float]:
-    table = run(physics / "check.py", "--only", case, "--repeat", 1)
+def inexact(physics: Path) -> list[str]:
+    """Cases with a known motion whose error is larger than asked; crowds have none, and show nan."""
+    table = run(physics / "check.py", "--repeat", 1)
     print(table)
-    return [float(line.split()[1]) for line in table.splitlines()[1:] if line.startswith("S")]
+    rows = [line.split() for line in table.splitlines() if line.startswith("S")]
+    asked = {name: EXACT.get(name[: name.index("_") + 1], ELSE) for name, *_ in rows}
+    known = {name: float(error) for name, error, *_ in rows if error != "nan"}
+    return [name for name, error in known.items() if not error <= asked[name]] if known else ["no case ran"]
 
 
 def main() -> int:
@@ -80,9 +85,7 @@ def main() -> int:
         for kind, rate in recognition(shared / "corpus", Path(work)).items():
             print(f"{kind}: {rate:.1%} wholly right, at least {RIGHT[kind]:.0%} asked")
             poor += [kind] if rate < RIGHT[kind] else []
-    for case, most in EXACT.items():
-        found = errors(shared / "physics", case)
-        poor += [case] if not found or max(found) > most else []
+    poor += inexact(shared / "physics")
     if poor:
         print("worse than asked:", ", ".join(poor))
     return 1 if poor else 0
