@@ -10,12 +10,15 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import cv2  # noqa: TID253
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE.parent / "samples")]
 
+import draw  # noqa: E402
 from page import Page  # noqa: E402
+from paper import picture  # noqa: E402
 
 from cli.render.canvas import Canvas  # noqa: E402
 from cli.render.overlay import overlay  # noqa: E402
@@ -60,9 +63,9 @@ def unread(page: Page) -> None:
     page.strokes.append(page.hand.line(list(zigzag)))
 
 
-def panels(draw: Callable[[Page], None]) -> Canvas:
-    page = Page(draw.__name__)
-    draw(page)
+def panels(word: Callable[[Page], None]) -> Canvas:
+    page = Page(word.__name__)
+    word(page)
     strokes = [{"points": stroke} for stroke in page.strokes]
     data = {"width": WIDTH, "height": HEIGHT, "pixels_per_metre": 100, "strokes": strokes}
     seen = recognize(load_sketch(json.dumps(data).encode()))
@@ -71,6 +74,21 @@ def panels(draw: Callable[[Page], None]) -> Canvas:
     return Canvas((np.hstack([ink.planes[0], gap, overlay(seen).planes[0]]),))
 
 
+def sheet() -> Canvas:
+    """The ink of every sample, four in a row."""
+    tiles = []
+    for name in draw.MACHINES:
+        ink = picture(draw.page_of(name), "scan")
+        ink = cv2.copyMakeBorder(ink, 2, 2, 2, 2, cv2.BORDER_CONSTANT, value=(225, 225, 225))
+        small = cv2.resize(ink, (320, 180), interpolation=cv2.INTER_AREA)
+        tiles.append(
+            np.minimum(small.astype(int) // 12 * 12 + 16, 255).astype(np.uint8)
+        )  # few greys: a small file
+    tiles += [np.full_like(tiles[0], 255)] * (-len(tiles) % 4)
+    return Canvas((np.vstack([np.hstack(tiles[k : k + 4]) for k in range(0, len(tiles), 4)]),))
+
+
 if __name__ == "__main__":
-    for draw in (bodies, anchor, pivot, gravity, bar, unread):
-        (HERE / f"{draw.__name__}.png").write_bytes(png(panels(draw)))
+    (HERE / "samples.png").write_bytes(png(sheet()))
+    for word in (bodies, anchor, pivot, gravity, bar, unread):
+        (HERE / f"{word.__name__}.png").write_bytes(png(panels(word)))
