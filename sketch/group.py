@@ -13,7 +13,7 @@ from sketch.pieces import Piece
 __all__ = ["arrow_groups", "closing_chains", "crossing_pairs"]
 
 MOST_PARTS = 6  # of one outline
-LOOSE = 0.22  # gaps of a chain, as a share of its ink
+LOOSE = 0.3  # gaps of a chain, as a share of its ink
 
 
 def closing_chains(pieces: list[Piece], complete: set[int]) -> list[list[tuple[int, bool]]]:

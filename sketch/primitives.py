@@ -67,13 +67,13 @@ def _misfit(mean_square: float, count: float) -> float:
     return 0.5 * count * (math.log1p(mean_square / TREMOR**2) + mean_square / SLOPPY**2)
 
 
-def _misfit_of(piece: Piece, mean_square: float) -> float:
+def _misfit_of(piece: Piece, mean_square: float, scale: float | None = None) -> float:
     """Nats to say where a piece's ink is, given lines that it is off by `mean_square` [pixels²].
 
     The writer's precision goes with the size of what is drawn, not with the group's: a small loop is no careless
     line of something large.
     """
-    off = mean_square / max(piece.scale, 1e-9) ** 2
+    off = mean_square / max(scale or piece.scale, 1e-9) ** 2
     return 0.5 * piece.observations * (math.log1p(off / TREMOR**2) + off / SLOPPY**2)
 
 
@@ -285,7 +285,8 @@ def arrow(pieces: list[Piece], names: tuple[int, ...], tail: Array, toward: Arra
     )
     radius = reach / 2
     each = (distance**2).reshape(len(names), -1).mean(axis=1).tolist()
-    misfit = sum(_misfit_of(pieces[i], square) for i, square in zip(names, each, strict=True))
+    whole = pieces[names[0]].extent / 2 if len(names) == 1 else None  # its ends may meet, yet it is no loop
+    misfit = sum(_misfit_of(pieces[i], square, whole) for i, square in zip(names, each, strict=True))
     mean_square = sum(each) / len(each) / radius**2
     drawn = sum(pieces[i].length for i in names)
     twice = max(1 - (reach + sum(lengths)) / drawn, 0.0)  # the share of the ink that was drawn twice

@@ -24,6 +24,8 @@ from sketch.search import best_packing
 __all__ = ["Reading", "Recognition", "recognize"]
 
 ANCHORS = 15.0  # nats that an X is likelier over a body than elsewhere
+SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
+SAME_PLACE = 60.0  # nats that an outline around another's place is the same body gone over, not a second one
 DOT = 0.012  # of the page: nobody draws a smaller body
 KINDS = {"ellipse": "polygon", "cross": "anchor", "arrow": "gravity"}
 
@@ -96,6 +98,9 @@ def _gone_over(found: list[Fitted], pieces: list[Piece]) -> list[Fitted]:
     """The readings of a chain with the other pieces that run along its outline as drawn once more."""
     best = min(found, key=lambda f: f.cost)
     costs = {j: primitives.absorb(best, pieces, j) for j in range(len(pieces)) if j not in best.pieces}
+    for j in costs:
+        if pieces[j].gap < 0.2 * pieces[j].length:
+            costs[j] -= SAME_PLACE
     again = [j for j, cost in costs.items() if cost < primitives.unread(pieces[j])]
     if not again:
         return []
@@ -142,7 +147,7 @@ def _with_context(
                 size < 0.5 * large and min(distance(c.outline[e], b.outline) for e in (0, -1)) < 0.1 * large
                 for b, large in others
             ):
-                gains[k] -= ANCHORS
+                gains[k] -= SLIP
         elif c.kind == "circle":
             under = [
                 b
