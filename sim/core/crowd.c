@@ -105,7 +105,7 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     touch_advance(crowd, dt);
     crowd->moment++;
     pivots_solve(crowd->pivot, crowd->pivot_count, mover, rigid);
-    contacts_relax(crowd->contact, crowd->contact_count, mover, dt);
+    contacts_part(crowd->contact, crowd->contact_count, mover);
     contacts_bounce(crowd->contact, crowd->contact_count, mover);
     world->profile.crowd_steps++;
     world->profile.crowd_contacts += crowd->contact_count;

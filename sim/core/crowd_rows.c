@@ -1,12 +1,12 @@
-/* Sequential impulses with substeps and relaxing: TGS of Catto's Solver2D (2024).
+/* Sequential impulses with substeps (Catto, "Solver2D", 2024).
  *
  * A pass goes through the rows in order and applies what each still lacks, with the sum clamped (contact: no pull;
- * friction: Coulomb's cone).  Overlap is driven out at a rate; relaxing passes take out the velocity that this put in.
- * Contacts are rigid rather than soft: a soft one sags under a pile by its load over its stiffness.
+ * friction: Coulomb's cone).  Contacts are rigid: soft ones sag under a pile by its load over their stiffness.  Overlap is
+ * taken out of the positions themselves (nonlinear Gauss-Seidel), never by velocities: a jam gains no energy from it.
  */
 #include "crowd_rows.h"
 
-static const double RATE = 0.2; /* share of an overlap that a substep drives out */
+static const double RATE = 0.4; /* share of an overlap that a pass drives out */
 
 Soft soft(double frequency, double damping, double dt) {
     double omega = 2 * 3.14159265358979323846 * frequency;
@@ -76,36 +76,6 @@ static inline double separation(const Contact *c, const Point *p, const Mover *a
            0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
 }
 
-bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first) {
-    double inverse_dt = 1 / dt, rate = RATE * inverse_dt;
-    bool heated = false;
-    for (int32_t i = 0; i < count; i++) {
-        Contact *c = &contact[i];
-        if (!first && heat[c->a] < pass - 1 && heat[c->b] < pass - 1) continue;
-        Mover *a = &mover[c->a], *b = &mover[c->b];
-        bool hot = false;
-        for (int32_t k = 0; k < c->count; k++) {
-            Point *p = &c->point[k];
-            double gap = separation(c, p, a, b), before = p->impulse_n, bias;
-            if (gap > 0) {
-                bias = gap * inverse_dt;
-            } else {
-                bias = gap + c->slop < 0 ? rate * (gap + c->slop) : 0;
-                bias = bias > -c->push ? bias : -c->push;
-            }
-            solve_normal(c, p, a, b, bias);
-            hot = hot || fabs(p->impulse_n - before) * dt > p->mass_n * c->fine;
-        }
-        Vec t = vperp(c->normal);
-        for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
-        if (!hot) continue;
-        heated = true;
-        if (a->inverse_mass > 0) heat[c->a] = pass;
-        if (b->inverse_mass > 0) heat[c->b] = pass;
-    }
-    return heated;
-}
-
 /* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
 static inline void solve_rolling(const Contact *c, Mover *a, Mover *b) {
     double normal = c->point[0].impulse_n + (c->count > 1 ? c->point[1].impulse_n : 0), most = c->rolling * normal;
@@ -115,19 +85,47 @@ static inline void solve_rolling(const Contact *c, Mover *a, Mover *b) {
     b->spin += b->inverse_moment * wanted;
 }
 
-void contacts_relax(Contact *contact, int32_t count, Mover *mover, double dt) {
+bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first) {
     double inverse_dt = 1 / dt;
+    bool heated = false;
+    for (int32_t i = 0; i < count; i++) {
+        Contact *c = &contact[i];
+        if (!first && heat[c->a] < pass - 1 && heat[c->b] < pass - 1) continue;
+        Mover *a = &mover[c->a], *b = &mover[c->b];
+        bool hot = false;
+        for (int32_t k = 0; k < c->count; k++) {
+            Point *p = &c->point[k];
+            double gap = separation(c, p, a, b), before = p->impulse_n;
+            solve_normal(c, p, a, b, gap > 0 ? gap * inverse_dt : 0);
+            hot = hot || fabs(p->impulse_n - before) * dt > p->mass_n * c->fine;
+        }
+        Vec t = vperp(c->normal);
+        for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
+        if (c->rolling > 0) solve_rolling(c, a, b);
+        if (!hot) continue;
+        heated = true;
+        if (a->inverse_mass > 0) heat[c->a] = pass;
+        if (b->inverse_mass > 0) heat[c->b] = pass;
+    }
+    return heated;
+}
+
+/* Take a share of the overlaps out of the positions. */
+void contacts_part(Contact *contact, int32_t count, Mover *mover) {
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         Mover *a = &mover[c->a], *b = &mover[c->b];
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
-            double gap = separation(c, p, a, b);
-            solve_normal(c, p, a, b, gap > 0 ? gap * inverse_dt : 0);
+            double overlap = -separation(c, p, a, b) - c->slop;
+            if (overlap <= 0) continue;
+            overlap = overlap < c->slack ? overlap : c->slack;
+            double push = RATE * overlap * p->mass_n;
+            a->moved = vmad(a->moved, -push * a->inverse_mass, c->normal);
+            a->turned -= push * a->inverse_moment * p->spin_na;
+            b->moved = vmad(b->moved, push * b->inverse_mass, c->normal);
+            b->turned += push * b->inverse_moment * p->spin_nb;
         }
-        Vec t = vperp(c->normal);
-        for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
-        if (c->rolling > 0) solve_rolling(c, a, b);
     }
 }
 

@@ -45,7 +45,6 @@ typedef struct Contact {
     double fine;        /* of a substep: a way too short to matter [m] */
     Vec normal;         /* from a to b */
     double friction, elasticity;
-    double push;        /* the fastest that an overlap is pushed apart [m/s] */
     double rolling;     /* lever of the rolling resistance [m]; 0: none */
     double turned;      /* of b against a when the points were found, in this frame */
     Vec moved;          /* likewise */
@@ -67,7 +66,7 @@ void contacts_measure(Contact *contact, int32_t count, const Mover *mover, doubl
 /* One pass.  heat: by mover, the last pass that changed it noticeably; a pass other than the first of a substep goes only
  * to contacts of bodies that the pass before it heated.  Whether this pass heated any. */
 bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first);
-void contacts_relax(Contact *contact, int32_t count, Mover *mover, double dt);
+void contacts_part(Contact *contact, int32_t count, Mover *mover);
 void contacts_bounce(Contact *contact, int32_t count, Mover *mover);
 
 void pivots_warm_start(Pivot *pivot, int32_t count, Mover *mover);

@@ -185,7 +185,7 @@ static bool slow(const World *world, int32_t body) {
 }
 
 static void add_contact(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
-    static const double PUSH = 20, SLACK = 0.05, SLOP = 0.005, FINE = 2.5e-3, ROLLING = 2e-3;
+    static const double SLACK = 0.05, SLOP = 0.005, FINE = 5e-3, ROLLING = 2e-3;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
     double reach = least_reach(world, near->piece_a, near->piece_b);
@@ -195,7 +195,6 @@ static void add_contact(Crowd *crowd, const World *world, const Near *near, cons
     c->walled = crowd->mover[near->a].inverse_mass == 0 || crowd->mover[near->b].inverse_mass == 0;
     c->friction = pair_friction(sa, sb);
     c->elasticity = pair_elasticity(sa, sb);
-    c->push = PUSH * reach;
     c->slack = SLACK * reach;
     c->slop = SLOP * reach;
     c->fine = FINE * reach;
