@@ -5,7 +5,8 @@
 
 static const double FRAME = 1.0 / 60;  /* [s]: contacts are found anew this often */
 static const int32_t SUBSTEPS = 4;     /* of a frame */
-static const int32_t PASSES = 8;       /* of a substep, at most */
+static const int32_t PASSES = 6;       /* between looks for new contacts, at most */
+static const int32_t LOOKS = 3;        /* of a substep, at most */
 static const double STIFFNESS = 0.5;   /* of a pivot: its frequency times the substep */
 static const double DAMPING = 5;       /* its ratio */
 
@@ -16,12 +17,13 @@ Crowd *crowd_create(const World *world) {
     crowd->shape_count = world->shape_count;
     crowd->piece_count = world->piece_count;
     size_t joints = (size_t)world->joint_count + 1;
+    crowd->active = calloc((size_t)world->body_count, sizeof *crowd->active);
     crowd->heat = calloc((size_t)world->body_count, sizeof *crowd->heat);
     crowd->mover = calloc((size_t)world->body_count, sizeof *crowd->mover);
     crowd->pivot = calloc(joints, sizeof *crowd->pivot);
     crowd->pivot_joint = calloc(joints, sizeof *crowd->pivot_joint);
     crowd->joint_impulse = calloc(joints, sizeof *crowd->joint_impulse);
-    bool made = crowd->mover && crowd->heat && crowd->pivot && crowd->pivot_joint && crowd->joint_impulse;
+    bool made = crowd->mover && crowd->active && crowd->heat && crowd->pivot && crowd->pivot_joint && crowd->joint_impulse;
     if (!made || touch_create(crowd, world) != SIM_OK || rest_create(crowd, world) != SIM_OK) {
         crowd_destroy(crowd);
         return NULL;
@@ -34,6 +36,7 @@ void crowd_destroy(Crowd *crowd) {
     touch_destroy(crowd);
     rest_destroy(crowd);
     free(crowd->mover);
+    free(crowd->active);
     free(crowd->heat);
     free(crowd->pivot);
     free(crowd->pivot_joint);
@@ -68,14 +71,15 @@ static void touch_pivots(Crowd *crowd) {
 
 static void accelerate(Crowd *crowd, const World *world, double dt) {
     Vec gain = vscale(world->gravity, dt);
-    for (int32_t i = 0; i < world->body_count; i++)
-        if (crowd_moves(world, i)) crowd->mover[i].velocity = vadd(crowd->mover[i].velocity, gain);
+    for (int32_t k = 0; k < crowd->active_count; k++) {
+        Mover *m = &crowd->mover[crowd->active[k]];
+        m->velocity = vadd(m->velocity, gain);
+    }
 }
 
-static void move(Crowd *crowd, const World *world, double dt) {
-    for (int32_t i = 0; i < world->body_count; i++) {
-        Mover *m = &crowd->mover[i];
-        if (!crowd_moves(world, i)) continue;
+static void move(Crowd *crowd, double dt) {
+    for (int32_t k = 0; k < crowd->active_count; k++) {
+        Mover *m = &crowd->mover[crowd->active[k]];
         m->moved = vmad(m->moved, dt, m->velocity);
         m->turned += dt * m->spin;
     }
@@ -86,22 +90,25 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     Mover *mover = crowd->mover;
     Soft hinge = soft(STIFFNESS / dt, DAMPING, dt);
     double threshold = 4 * dt * vlength(world->gravity);
-    bool found;
     int status = SIM_OK;
     touch_refresh(crowd, world, left, threshold);
     accelerate(crowd, world, dt);
     contacts_measure(crowd->contact, crowd->contact_count, mover, threshold);
     pivots_warm_start(crowd->pivot, crowd->pivot_count, mover);
-    contacts_warm_start(crowd->contact, crowd->contact_count, mover);
-    for (int32_t pass = 0; pass < PASSES; pass++) {
-        pivots_solve(crowd->pivot, crowd->pivot_count, mover, hinge);
-        crowd->passes++;
-        bool heated = contacts_solve(crowd->contact, crowd->contact_count, mover, dt, crowd->heat, crowd->passes, pass == 0);
-        status = touch_near(crowd, world, left, dt, threshold, pass == 0, &found);
-        if (status != SIM_OK || !(found || heated)) break;
+    contacts_warm_start(crowd->contact, crowd->contact_count, mover, dt);
+    bool found = true;
+    for (int32_t look = 0; found && look < LOOKS && status == SIM_OK; look++) {
+        bool heated = true;
+        for (int32_t pass = 0; heated && pass < PASSES; pass++) {
+            pivots_solve(crowd->pivot, crowd->pivot_count, mover, hinge);
+            crowd->passes++;
+            heated = contacts_solve(crowd->contact, crowd->contact_count, mover, dt, crowd->heat, crowd->passes,
+                                    look == 0 && pass == 0);
+        }
+        status = touch_near(crowd, world, left, dt, threshold, &found);
     }
     if (status != SIM_OK) return status;
-    move(crowd, world, dt);
+    move(crowd, dt);
     touch_advance(crowd, dt);
     crowd->moment++;
     pivots_solve(crowd->pivot, crowd->pivot_count, mover, rigid);
@@ -113,10 +120,9 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
 }
 
 static void store(Crowd *crowd, World *world) {
-    for (int32_t i = 0; i < world->body_count; i++) {
-        Body *body = &world->body[i];
-        if (body->mode != MODE_CROWD) continue;
-        const Mover *m = &crowd->mover[i];
+    for (int32_t k = 0; k < crowd->active_count; k++) {
+        const Mover *m = &crowd->mover[crowd->active[k]];
+        Body *body = &world->body[crowd->active[k]];
         body->position = vadd(body->position, m->moved);
         body->angle += m->turned;
         body->velocity = m->velocity;

@@ -25,6 +25,8 @@ struct Crowd {
     double tolerance;
     int32_t body_count, shape_count, piece_count;
     Mover *mover;        /* by body */
+    int32_t *active;     /* the bodies that take part in the frame */
+    int32_t active_count;
     int64_t *heat;       /* by body: the last pass that changed it noticeably */
     int64_t passes;
     Pose *start;         /* by body: when the frame began */
@@ -65,8 +67,7 @@ void touch_destroy(Crowd *crowd);
 void touch_place(Crowd *crowd, const World *world, int32_t body);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
 void touch_refresh(Crowd *crowd, World *world, double left, double threshold);
-int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool first,
-               bool *found);
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
 void touch_advance(Crowd *crowd, double substep);
 
 /* crowd_rest.c */

@@ -25,13 +25,23 @@ static inline double speed(const Mover *a, const Mover *b, Vec direction, double
     return vdot(direction, vsub(b->velocity, a->velocity)) + b->spin * spin_b - a->spin * spin_a;
 }
 
-void contacts_warm_start(Contact *contact, int32_t count, Mover *mover) {
+/* How far apart the point's two surfaces are now; turning counts to second order. */
+static inline double separation(const Contact *c, const Point *p, const Mover *a, const Mover *b) {
+    return p->separation + vdot(vsub(b->moved, a->moved), c->normal) + b->turned * p->spin_nb - a->turned * p->spin_na -
+           0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
+}
+
+void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double dt) {
+    double inverse_dt = 1 / dt;
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         Mover *a = &mover[c->a], *b = &mover[c->b];
         Vec n = c->normal, t = vperp(n);
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
+            double gap = separation(c, p, a, b);
+            p->limit = gap > 0 ? -gap * inverse_dt : 0;
+            if (p->impulse_n == 0) continue;
             push(a, b, n, p->spin_na, p->spin_nb, p->impulse_n);
             push(a, b, t, p->spin_ta, p->spin_tb, p->impulse_t);
         }
@@ -53,6 +63,7 @@ void contacts_measure(Contact *contact, int32_t count, const Mover *mover, doubl
 }
 
 static inline void solve_friction(Contact *c, Point *p, Mover *a, Mover *b, Vec t) {
+    if (p->impulse_n == 0 && p->impulse_t == 0) return;
     double v = speed(a, b, t, p->spin_ta, p->spin_tb), most = c->friction * p->impulse_n;
     double sum = p->impulse_t - p->mass_t * v;
     sum = sum > most ? most : sum < -most ? -most : sum;
@@ -61,19 +72,16 @@ static inline void solve_friction(Contact *c, Point *p, Mover *a, Mover *b, Vec 
     push(a, b, t, p->spin_ta, p->spin_tb, impulse);
 }
 
-static inline void solve_normal(Contact *c, Point *p, Mover *a, Mover *b, double bias) {
+/* Bring the normal velocity to what is wanted, without pulling. Returns the impulse. */
+static inline double solve_normal(Contact *c, Point *p, Mover *a, Mover *b, double wanted) {
     double v = speed(a, b, c->normal, p->spin_na, p->spin_nb);
-    double sum = p->impulse_n - p->mass_n * (v + bias);
+    double sum = p->impulse_n - p->mass_n * (v - wanted);
     sum = sum > 0 ? sum : 0;
     double impulse = sum - p->impulse_n;
+    if (impulse == 0) return 0;
     p->impulse_n = sum;
     push(a, b, c->normal, p->spin_na, p->spin_nb, impulse);
-}
-
-/* How far apart the point's two surfaces are now; turning counts to second order. */
-static inline double separation(const Contact *c, const Point *p, const Mover *a, const Mover *b) {
-    return p->separation + vdot(vsub(b->moved, a->moved), c->normal) + b->turned * p->spin_nb - a->turned * p->spin_na -
-           0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
+    return impulse;
 }
 
 /* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
@@ -86,7 +94,6 @@ static inline void solve_rolling(const Contact *c, Mover *a, Mover *b) {
 }
 
 bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first) {
-    double inverse_dt = 1 / dt;
     bool heated = false;
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
@@ -95,9 +102,8 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
         bool hot = false;
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
-            double gap = separation(c, p, a, b), before = p->impulse_n;
-            solve_normal(c, p, a, b, gap > 0 ? gap * inverse_dt : 0);
-            hot = hot || fabs(p->impulse_n - before) * dt > p->mass_n * c->fine;
+            double change = solve_normal(c, p, a, b, p->limit);
+            hot = hot || fabs(change) * dt > p->mass_n * c->fine;
         }
         Vec t = vperp(c->normal);
         for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
@@ -135,7 +141,7 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
             if (p->approach == 0 || p->impulse_n <= 0) continue;
-            solve_normal(c, p, &mover[c->a], &mover[c->b], c->elasticity * p->approach);
+            solve_normal(c, p, &mover[c->a], &mover[c->b], -c->elasticity * p->approach);
             p->approach = 0;
         }
     }

@@ -32,6 +32,7 @@ typedef struct Point {
     double along_na, along_nb;   /* r . n, for the second order of turning */
     double mass_n, mass_t;       /* effective masses */
     double impulse_n, impulse_t; /* of one substep, kept for warm starting */
+    double limit;                /* the fastest that the two may approach in the substep, less than 0: at a gap, not to pass it */
     double approach;             /* normal velocity before the touch, for restitution; 0 when none is due */
     uint32_t feature;
 } Point;
@@ -60,7 +61,8 @@ typedef struct Pivot {
     Vec impulse;
 } Pivot;
 
-void contacts_warm_start(Contact *contact, int32_t count, Mover *mover);
+/* Once for each contact of a substep, before it is solved. */
+void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double dt);
 void contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold);
 
 /* One pass.  heat: by mover, the last pass that changed it noticeably; a pass other than the first of a substep goes only

@@ -287,17 +287,18 @@ static int consider_shapes(Crowd *crowd, World *world, Pair pair, double dt, dou
 }
 
 static void load(Crowd *crowd, const World *world) {
+    crowd->active_count = 0;
     for (int32_t i = 0; i < world->body_count; i++) {
         const Body *body = &world->body[i];
         Mover *m = &crowd->mover[i];
         *m = (Mover){0};
         crowd->touched[i] = false;
-        if (body->mode == MODE_CROWD) {
-            m->velocity = body->velocity;
-            m->spin = body->spin;
-            m->inverse_mass = body->inverse_mass;
-            m->inverse_moment = body->inverse_moment;
-        }
+        if (body->mode != MODE_CROWD) continue;
+        crowd->active[crowd->active_count++] = i;
+        m->velocity = body->velocity;
+        m->spin = body->spin;
+        m->inverse_mass = body->inverse_mass;
+        m->inverse_moment = body->inverse_moment;
     }
 }
 
@@ -376,55 +377,61 @@ static int add_near(Crowd *crowd, const World *world, int32_t shape_a, int32_t s
     return SIM_OK;
 }
 
-/* Bodies that were knocked out of their range may meet others: look for the pairs. */
+/* A body that was knocked out of its range may meet others: look for the pairs. */
+static int follow(Crowd *crowd, const World *world, int32_t body, double left) {
+    widen_range(crowd, world, body, left);
+    sweep_boxes(crowd, world, body);
+    if (crowd->known.count < 0 && fill_known(crowd) != SIM_OK) return SIM_OUT_OF_MEMORY;
+    const Body *b = &world->body[body];
+    for (int32_t s = b->first_shape; s < b->first_shape + b->shape_count; s++)
+        for (int32_t k = 0; k < world->shape_count; k++) {
+            if (!boxes_meet(&crowd->shape_box[s], &crowd->shape_box[k])) continue;
+            if (!takes_part(world, &world->shape[k]) || !world_collides(world, s, k)) continue;
+            int status = add_near(crowd, world, s < k ? s : k, s < k ? k : s);
+            if (status != SIM_OK) return status;
+        }
+    return SIM_OK;
+}
+
 static int follow_strays(Crowd *crowd, const World *world, double left, double dt) {
-    for (int32_t i = 0; i < world->body_count; i++) {
+    for (int32_t k = 0; k < crowd->active_count; k++) {
+        int32_t i = crowd->active[k];
         const Mover *m = &crowd->mover[i];
         const Range *range = &crowd->range[i];
-        if (m->inverse_mass == 0) continue;
         Vec to = vmad(m->moved, dt, m->velocity);
         double out = larger(larger(range->low.x - to.x, to.x - range->high.x), larger(range->low.y - to.y, to.y - range->high.y));
         double turning = smaller(fabs(m->turned) + fabs(m->spin) * dt, 2.0) * crowd->body_swing[i];
         if (larger(out, 0) + turning <= range->room) continue;
-        widen_range(crowd, world, i, left);
-        sweep_boxes(crowd, world, i);
-        if (crowd->known.count < 0 && fill_known(crowd) != SIM_OK) return SIM_OUT_OF_MEMORY;
-        const Body *body = &world->body[i];
-        for (int32_t s = body->first_shape; s < body->first_shape + body->shape_count; s++)
-            for (int32_t k = 0; k < world->shape_count; k++) {
-                if (!boxes_meet(&crowd->shape_box[s], &crowd->shape_box[k])) continue;
-                if (!takes_part(world, &world->shape[k]) || !world_collides(world, s, k)) continue;
-                int status = add_near(crowd, world, s < k ? s : k, s < k ? k : s);
-                if (status != SIM_OK) return status;
-            }
+        int status = follow(crowd, world, i, left);
+        if (status != SIM_OK) return status;
     }
     return SIM_OK;
 }
 
-/* After a pass: the near pairs that may touch in the substep at the velocities that it left become contacts.  After passes
- * but the first only pairs of bodies that it heated are looked at.  Whether any were found; they are hot. */
-int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool first, bool *found) {
-    int64_t pass = crowd->passes, *heat = crowd->heat;
+/* After the passes: the near pairs that may touch in the substep at the velocities found become contacts.  Whether there
+ * were any; they are hot. */
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found) {
     int status = follow_strays(crowd, world, left, substep);
     if (status != SIM_OK) return status;
     int32_t kept = 0, before = crowd->contact_count;
     for (int32_t i = 0; i < crowd->near_count; i++) {
-        Near near = crowd->near[i];
-        bool may = first || heat[near.a] == pass || heat[near.b] == pass || near.gap <= 0;
-        if (may && near.gap - approach(crowd, &near, substep) <= 0) {
-            double soon = closing(crowd, world, &near, substep), reach = least_reach(world, near.piece_a, near.piece_b);
-            if (look(crowd, world, &near, soon, closing(crowd, world, &near, left) + soon + MORE * reach)) {
-                if (crowd->mover[near.a].inverse_mass > 0) heat[near.a] = pass;
-                if (crowd->mover[near.b].inverse_mass > 0) heat[near.b] = pass;
+        Near *near = &crowd->near[i];
+        if (near->gap - approach(crowd, near, substep) <= 0) {
+            double soon = closing(crowd, world, near, substep), later = closing(crowd, world, near, left);
+            if (look(crowd, world, near, soon, soon + later + MORE * least_reach(world, near->piece_a, near->piece_b))) {
+                if (crowd->mover[near->a].inverse_mass > 0) crowd->heat[near->a] = crowd->passes;
+                if (crowd->mover[near->b].inverse_mass > 0) crowd->heat[near->b] = crowd->passes;
                 continue;
             }
         }
-        crowd->near[kept++] = near;
+        if (kept != i) crowd->near[kept] = *near;
+        kept++;
     }
     crowd->near_count = kept;
     *found = crowd->contact_count > before;
-    if (*found)
-        contacts_measure(crowd->contact + before, crowd->contact_count - before, crowd->mover, threshold);
+    if (!*found) return SIM_OK;
+    contacts_measure(crowd->contact + before, crowd->contact_count - before, crowd->mover, threshold);
+    contacts_warm_start(crowd->contact + before, crowd->contact_count - before, crowd->mover, substep);
     return SIM_OK;
 }
 
