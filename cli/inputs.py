@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,7 +15,7 @@ from sim.scene import InputError, Scene
 if TYPE_CHECKING:
     from sketch.recognize import Recognition
 
-__all__ = ["Loaded", "load", "read", "recognize_bytes"]
+__all__ = ["Loaded", "load", "naming", "read", "recognize_bytes"]
 
 STDIN = "-"
 MAX_BYTES = 64 << 20  # of any input: a photo of 12 megapixels has 2 to 15 MB
@@ -60,6 +62,17 @@ def load(source: str, scale: float | None = None) -> Loaded:
         return Loaded(Scene.from_json(data))
     recognition = recognize_bytes(data, scale)
     return Loaded(recognition.scene, recognition)
+
+
+@contextlib.contextmanager
+def naming(source: str, wanted: bool) -> Iterator[None]:
+    """Put the input's name before the path of what is wrong in it, where there are several inputs."""
+    try:
+        yield
+    except InputError as e:
+        if wanted and source not in e.path:
+            raise InputError(f"{source}: {e.path}" if e.path else source, e.problem, e.hint) from e
+        raise
 
 
 def is_scene(data: bytes) -> bool:

@@ -19,8 +19,8 @@ class Progress:
 
     EVERY = 0.1  # seconds between two changes of the line
 
-    def __init__(self) -> None:
-        self._on = sys.stderr.isatty()
+    def __init__(self, wanted: bool = True) -> None:
+        self._on = wanted and sys.stderr.isatty()
         self._last = 0.0
         self._what = ""
         self._began = 0.0

@@ -1,38 +1,44 @@
-"""`sketchsim simulate`: a drawing or a scene in; video, pictures and data out."""
+"""`sketchsim simulate`: drawings or scenes in; video, pictures and data out."""
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
+import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cli.arguments import UsageError, number, picture_size, vector
-from cli.outputs import STDOUT, Outputs, check_outputs, ending
+from cli.outputs import STDOUT, Outputs, check_outputs
+from cli.results import ENDINGS, Look, Run
 
 if TYPE_CHECKING:
-    from cli.inputs import Loaded
     from cli.progress import Progress
+    from sim.scene import Scene
     from sim.trajectory import Trajectory
 
-__all__ = ["add_to"]
+__all__ = ["add_run_options", "add_to", "run_of"]
 
-ENDINGS = (".mp4", ".html", ".png", ".npz", ".json", ".csv")
-DATA = {".npz": "to_npz", ".json": "to_json", ".csv": "to_csv"}
 MAX_SAMPLES = 1_000_000  # of the motion; a day at 10 fps
 GRAVITY = 9.81  # [m/s²]
 
-DESCRIPTION = "Run a drawing or a scene, and write what happens."
+DESCRIPTION = "Run drawings or scenes, and write what happens."
 EPILOG = """\
 endings of OUT:
-  .mp4             video (H.264)
+  .mp4 .webm .gif  video
   .html            a page to play it in, with graphs
-  .png             one picture of the whole motion
+  .png             the whole motion in one picture
+  .svg             the scene before it moves
   .npz .json .csv  the motion as numbers; - is JSON on standard output
+With several inputs OUT is an ending alone (.mp4, or films/.mp4): each file gets its input's name.
 
 examples:
   sketchsim simulate cart.json
   sketchsim simulate photo.jpg -o run.mp4 -o run.csv --duration 5
+  sketchsim simulate cart.json -o cart.html -o cart.gif --style ink --trails
+  sketchsim simulate *.json -o .mp4 --until-rest
   sketchsim simulate scene.json -o - --fps 1000 --tolerance 1e-8
 """
 
@@ -42,24 +48,45 @@ def add_to(commands: argparse._SubParsersAction[Any]) -> None:
         "simulate", help="run a drawing or a scene", description=DESCRIPTION, epilog=EPILOG
     )
     p.add_argument(
-        "input", metavar="INPUT", help="strokes, a picture or a scene, told by content; - is standard input"
-    )
+        "inputs", metavar="INPUT", nargs="+",
+        help="strokes, a picture or a scene, told by content; - is standard input",
+    )  # fmt: skip
     p.add_argument(
         "-o", dest="outputs", metavar="OUT", action="append", default=[],
         help="file to write, may be given several times (default: the input's name, .mp4, in this folder)",
     )  # fmt: skip
-    p.add_argument(
-        "--duration",
-        type=number(0, 86_400),
-        default=10.0,
-        metavar="SECONDS",
-        help="how long to run (default: 10)",
+    add_run_options(p)
+    look = p.add_argument_group("look")
+    look.add_argument(
+        "--size", type=picture_size, default=(1280, 720), metavar="WxH", help="pixels (default: 1280x720)"
     )
+    look.add_argument(
+        "--style", choices=("clean", "ink", "blueprint"), default="clean",
+        help="ink moves the strokes that were drawn",
+    )  # fmt: skip
+    look.add_argument("--trails", action="store_true", help="draw the paths of the bodies' centres")
+    look.add_argument("--vectors", action="store_true", help="draw velocities (blue) and net forces (red)")
+    look.add_argument(
+        "--camera",
+        type=_camera,
+        default=None,
+        metavar="fit|follow:ID",
+        help="follow keeps a body in the middle",
+    )
+    p.add_argument("-q", "--quiet", action="store_true", help="no notes and no progress")
+    p.add_argument("-v", "--verbose", action="store_true", help="say what was done and how long it took")
+    p.set_defaults(run=run)
+
+
+def add_run_options(p: argparse.ArgumentParser) -> None:
+    """The options that say what is run, apart from how it is shown."""
+    p.add_argument(
+        "--duration", type=number(0, 86_400), default=10.0, metavar="SECONDS",
+        help="how long to run (default: 10)",
+    )  # fmt: skip
+    p.add_argument("--until-rest", action="store_true", help="end a second after everything has come to rest")
     p.add_argument(
         "--fps", type=number(0, 100_000), default=60.0, help="frames and samples a second (default: 60)"
-    )
-    p.add_argument(
-        "--size", type=picture_size, default=(1280, 720), metavar="WxH", help="pixels (default: 1280x720)"
     )
     p.add_argument(
         "--tolerance", type=number(0, 1), default=1e-4, metavar="METRES", help="error allowed (default: 1e-4)"
@@ -73,82 +100,106 @@ def add_to(commands: argparse._SubParsersAction[Any]) -> None:
     p.add_argument(
         "--scale", type=number(0, 1e9), metavar="PX_PER_M", help="pixels of the drawing in a metre"
     )
-    p.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
-    outputs = options.outputs or [_default_output(options.input)]
-    check_outputs(outputs, ENDINGS, [options.input])
+    targets = [_targets(source, options) for source in options.inputs]
+    check_outputs([target for each in targets for target in each], ENDINGS, options.inputs)
+    check_samples(options)
+    for source, each in zip(options.inputs, targets, strict=True):
+        _simulate(source, each, options)
+    return 0
+
+
+def check_samples(options: argparse.Namespace) -> None:
     if options.duration * options.fps > MAX_SAMPLES:
         raise UsageError(
             f"--duration {options.duration:g} at --fps {options.fps:g} is more than {MAX_SAMPLES:,} samples",
             "make either smaller",
         )
-    from cli.inputs import load
+
+
+def _simulate(source: str, targets: list[str], options: argparse.Namespace) -> None:
+    from cli.inputs import naming
     from cli.progress import Progress, note
+
+    tell = (lambda _: None) if options.quiet else note
+    with naming(source, len(options.inputs) > 1), Progress(not options.quiet) as progress:
+        result = run_of(source, options, tell, progress)
+        if options.verbose:
+            _tell_profile(result, note)
+        began = time.perf_counter()
+        with Outputs() as files:
+            for target in targets:
+                result.write(files, target, partial(progress.say, f"drawing {target}"))
+        if options.verbose:
+            note(f"wrote {' '.join(targets)} in {time.perf_counter() - began:.3f} s")
+        if any(target.endswith((".mp4", ".webm", ".gif")) for target in targets):
+            _tell_what_left(result.lost(), tell)
+
+
+def run_of(source: str, options: argparse.Namespace, tell: Any, progress: Progress | None = None) -> Run:
+    """Read an input and simulate it; `tell` is given the notes."""
+    from cli.inputs import load
     from sim import simulate
 
-    loaded = load(options.input, options.scale)
+    if progress is not None:
+        progress.say("reading")
+    loaded = load(source, options.scale)
     scene = loaded.scene
     if options.gravity is not None:
         scene.gravity = options.gravity
     for text in scene.notes:
         if options.gravity is None or "gravity" not in text:
-            note(text)
-    with Progress() as progress:
+            tell(text)
+    look = _look(options, scene)
+    if progress is not None:
         progress.say("simulating")
-        motion = simulate(
-            scene,
-            duration=options.duration,
-            fps=options.fps,
-            tolerance=options.tolerance,
-            engine=options.engine,
-        )
-        _check_finite(motion)
-        with Outputs() as files:
-            for target in outputs:
-                _write(files, target, loaded, motion, options, progress)
-    return 0
-
-
-def _write(
-    files: Outputs,
-    target: str,
-    loaded: Loaded,
-    motion: Trajectory,
-    options: argparse.Namespace,
-    progress: Progress,
-) -> None:
-    kind = ending(target)
-    if kind in DATA:
-        files.write(target, getattr(motion, DATA[kind])())
-        return
-    from cli.render.camera import fit
-    from cli.render.figure import Figure
-    from cli.render.style import CLEAN
-
-    scene = loaded.scene
-    camera = fit(scene, options.size, motion)
-    sketch = loaded.recognition.sketch if loaded.recognition else None
-    figure = Figure(scene, camera, CLEAN, sketch)
-    if kind == ".html":
-        from cli.render.page import page
-
-        title = Path(options.input).stem if options.input != STDOUT else "sketch"
-        files.write(target, page(figure, motion, title, sketch))
-        return
-    if kind == ".png":
-        from cli.render.still import png, strobe
-
-        files.write(target, png(strobe(figure, motion)))
-        return
-    from cli.render.camera import outside
-    from cli.render.video import write_video
-
-    write_video(
-        files.stage(target), figure, motion, options.fps, lambda done: progress.say(f"drawing {target}", done)
+    motion = simulate(
+        scene,
+        duration=options.duration,
+        fps=options.fps,
+        tolerance=options.tolerance,
+        engine=options.engine,
     )
-    _tell_what_left(outside(scene, motion, camera))
+    _check_finite(motion)
+    if options.until_rest:
+        motion, rested = until_rest(motion, options.fps)
+        if not rested:
+            tell(f"still moving after {options.duration:g} s")
+    if look.style == "ink" and loaded.recognition is None:
+        tell("a scene has no ink to move: bodies are drawn plain")
+    title = Path(source).stem if source != STDOUT else "sketch"
+    return Run(title, scene, motion, options.fps, look, loaded.recognition)
+
+
+def _look(options: argparse.Namespace, scene: Scene) -> Look:
+    if not hasattr(options, "style"):
+        return Look()
+    if options.camera is not None and options.camera not in {body.id for body in scene.bodies}:
+        names = " ".join(body.id for body in scene.bodies[:20])
+        raise UsageError(f"--camera: there is no body {options.camera!r}", f"the bodies are: {names}")
+    return Look(options.size, options.style, options.trails, options.vectors, options.camera)
+
+
+def until_rest(motion: Trajectory, fps: float) -> tuple[Trajectory, bool]:
+    """The motion up to a second after the last movement, and whether it comes to rest at all."""
+    import numpy as np
+
+    moving = np.hypot(*np.moveaxis(motion.velocities, 2, 0)) + np.abs(motion.angular_velocities) > 1e-3
+    last = np.flatnonzero(moving.any(axis=1))
+    end = (int(last[-1]) if len(last) else 0) + math.ceil(fps)
+    if end >= len(motion) - 1:
+        return motion, len(last) == 0 or int(last[-1]) < len(motion) - 1
+    return _cut(motion, end), True
+
+
+def _cut(motion: Trajectory, end: int) -> Trajectory:
+    """The motion up to and with sample `end`."""
+    names = ("times", "positions", "angles", "velocities", "angular_velocities", "energy")
+    arrays: dict[str, Any] = {name: getattr(motion, name)[: end + 1] for name in names}
+    events = [event for event in motion.events if event.time <= motion.times[end]]
+    return dataclasses.replace(motion, events=events, **arrays)
 
 
 def _check_finite(motion: Trajectory) -> None:
@@ -160,17 +211,48 @@ def _check_finite(motion: Trajectory) -> None:
         raise RuntimeError(f"the engine lost {motion.body_ids[body]} at {motion.times[sample]:g} s")
 
 
-def _tell_what_left(lost: list[tuple[str, float]]) -> None:
-    from cli.progress import note
-
-    for name, time in lost[:5]:
-        note(f"{name} leaves the picture at {time:.1f} s")
+def _tell_what_left(lost: list[tuple[str, float]], tell: Any) -> None:
+    for name, at in lost[:5]:
+        tell(f"{name} leaves the picture at {at:.1f} s")
     if len(lost) > 5:
-        note(f"{len(lost) - 5} more bodies leave the picture")
+        tell(f"{len(lost) - 5} more bodies leave the picture")
 
 
-def _default_output(source: str) -> str:
-    return f"{Path(source).stem or 'sketch'}.mp4" if source != STDOUT else "sketch.mp4"
+def _tell_profile(result: Run, tell: Any) -> None:
+    """What the engine did: times in seconds, the rest are counts; what was not needed is left out."""
+    bodies, joints = len(result.scene.bodies), len(result.scene.joints)
+    tell(
+        f"{bodies} bodies, {joints} joints, {len(result.motion)} samples, {len(result.motion.events)} events"
+    )
+    used = [f"{name} {value:.6g}" for name, value in result.motion.profile.items() if value]
+    if used:
+        tell("engine: " + ", ".join(used))
+
+
+def _targets(source: str, options: argparse.Namespace) -> list[str]:
+    """The files of one input; an OUT that is an ending alone gets the input's name."""
+    name = "sketch" if source == STDOUT else Path(source).stem or "sketch"
+    targets = []
+    for out in options.outputs or [".mp4"]:
+        path = Path(out)
+        if path.name in ENDINGS:
+            targets.append(str(path.with_name(name + path.name)))
+        elif len(options.inputs) > 1:
+            raise UsageError(
+                f"-o {out}: one file cannot hold {len(options.inputs)} runs",
+                "give an ending alone, as in -o .mp4",
+            )
+        else:
+            targets.append(out)
+    return targets
+
+
+def _camera(text: str) -> str | None:
+    if text == "fit":
+        return None
+    if text.startswith("follow:") and len(text) > 7:
+        return text[7:]
+    raise argparse.ArgumentTypeError(f"{text!r} is neither fit nor follow:ID")
 
 
 def _gravity(text: str) -> tuple[float, float]:

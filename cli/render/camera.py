@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from sim.scene import Circle, Scene
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
 
-__all__ = ["Camera", "fit", "outside", "reach"]
+__all__ = ["Camera", "along", "fit", "outside", "reach"]
 
 Array = NDArray[np.float64]
 
@@ -104,6 +105,16 @@ def _clip(start: tuple[Array, Array], motion: tuple[Array, Array], most: float) 
     below, above = start[0] - low, high - start[1]
     share = np.divide(below, below + above, out=np.zeros(2), where=below + above > 0)
     return low + over * share, high - over * (1 - share)
+
+
+def along(camera: Camera, path: Array) -> Camera:
+    """A camera of the same scale that takes in all that `camera` would with each point of a path (n, 2) [m]
+    in its middle.
+    """
+    half = np.array(camera.size) / (2 * camera.scale)
+    low, high = path.min(axis=0) - half, path.max(axis=0) + half
+    width, height = (2 * math.ceil(x / 2) for x in (high - low) * camera.scale)
+    return Camera((width, height), camera.scale, (float(low[0]), float(high[1])))
 
 
 def reach(scene: Scene, k: int) -> float:

@@ -77,12 +77,20 @@ class Canvas:
         brightness: Any = cv2.transform(bgr, _Y)
         return Canvas((brightness, colors))
 
-    def copy_from(self, other: Canvas, box: Box | None = None) -> None:
-        """Take over another canvas of the same kind, or what it has within a box of even sides."""
+    def copy(self) -> Canvas:
+        return Canvas(tuple(plane.copy() for plane in self.planes))
+
+    def copy_from(self, other: Canvas, box: Box | None = None, at: tuple[int, int] = (0, 0)) -> None:
+        """Take over, within a box, the pixels of another canvas of the same kind.
+
+        at: the column and row of the other that this one's first are; all of these are even.
+        """
         left, top, right, bottom = box or (0, 0, *self.planes[0].shape[1::-1])
         for k, (mine, its) in enumerate(zip(self.planes, other.planes, strict=True)):
-            part = np.s_[top >> (k > 0) : bottom >> (k > 0), left >> (k > 0) : right >> (k > 0)]
-            np.copyto(mine[part], its[part])
+            half = k > 0
+            x, y = at[0] >> half, at[1] >> half
+            left_, top_, right_, bottom_ = left >> half, top >> half, right >> half, bottom >> half
+            np.copyto(mine[top_:bottom_, left_:right_], its[top_ + y : bottom_ + y, left_ + x : right_ + x])
 
     def views(self, points: Points) -> Iterator[tuple[Bytes, Points, int]]:
         """Every plane with `points` (..., 2) in its own fixed-point coordinates and their bits of fraction.

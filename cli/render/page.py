@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import base64
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
 
-from cli.render.figure import Figure, length_label, round_length
-from cli.render.style import RGB, mix
+from cli.render.backdrop import length_label, round_length
+from cli.render.figure import Figure, carried
+from cli.render.ink import Ink
+from cli.render.style import RGB
 from sim.scene import Circle, Joint
 
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
-    from sketch.ink import Sketch
 
 __all__ = ["page"]
 
@@ -24,10 +24,10 @@ PLAYER = Path(__file__).with_name("player")
 SCRIPTS = ("recording", "stage", "graphs", "controls")
 
 
-def page(figure: Figure, motion: Trajectory, title: str, sketch: Sketch | None = None) -> bytes:
+def page(figure: Figure, motion: Trajectory, title: str, ink: Ink | None = None) -> bytes:
     """The whole page as UTF-8."""
     # Within a script element only these two could end it or start a comment.
-    data = msgspec.json.encode(_data(figure, motion, sketch)).decode().replace("<", "\\u003c")
+    data = msgspec.json.encode(_data(figure, motion, ink or [])).decode().replace("<", "\\u003c")
     parts = {
         "title": title.replace("&", "&amp;").replace("<", "&lt;"),
         "style": (PLAYER / "player.css").read_text("utf-8").strip(),
@@ -43,7 +43,7 @@ def page(figure: Figure, motion: Trajectory, title: str, sketch: Sketch | None =
     return "".join(out).encode()
 
 
-def _data(figure: Figure, motion: Trajectory, sketch: Sketch | None) -> dict[str, Any]:
+def _data(figure: Figure, motion: Trajectory, ink: Ink) -> dict[str, Any]:
     scene, camera, style = figure.scene, figure.camera, figure.style
     samples = np.concatenate(
         [motion.positions, motion.angles[..., None], motion.velocities, motion.angular_velocities[..., None]],
@@ -64,7 +64,7 @@ def _data(figure: Figure, motion: Trajectory, sketch: Sketch | None) -> dict[str
         "drawn": _css(style.drawn),
         "bodies": [_body(figure, k) for k in range(len(scene.bodies))],
         "pivots": [_pivot(figure, joint) for joint in scene.joints],
-        "ink": _ink(figure, sketch),
+        "ink": [np.round(stroke, 3).tolist() for _, stroke in ink],  # a millimetre of a page of ten metres
         "motion": base64.b64encode(samples.astype("<f4").tobytes()).decode(),
     }
 
@@ -72,7 +72,7 @@ def _data(figure: Figure, motion: Trajectory, sketch: Sketch | None) -> dict[str
 def _body(figure: Figure, k: int) -> dict[str, Any]:
     body = figure.scene.bodies[k]
     mass, moment = body.mass_properties()
-    fill, edge = figure.body_paints(k)
+    paints = figure.paints[k]
     round_ = isinstance(body.shape, Circle)
     return {
         "id": body.id,
@@ -82,33 +82,21 @@ def _body(figure: Figure, k: int) -> dict[str, Any]:
         "outline": [] if round_ else [list(p) for p in body.shape.vertices],  # type: ignore[union-attr]
         "mass": mass,
         "moment": moment,
-        "fill": _css(fill),
-        "edge": _css(edge),
-        "stripes": _css(mix(figure.colors[k], figure.style.ink, 0.12)),
+        "fill": _css(paints.filling),
+        "edge": _css(paints.edge),
+        "stripes": _css(paints.stripes),
     }
 
 
 def _pivot(figure: Figure, joint: Joint) -> dict[str, Any]:
     """The body that carries the pivot, and the point in its frame; on the page where no body moves."""
-    for name in joint.bodies:
-        if name is not None and not figure.scene.bodies[figure.index[name]].anchored:
-            body = figure.scene.bodies[figure.index[name]]
-            c, s = math.cos(body.angle), math.sin(body.angle)
-            x, y = (joint.position[i] - body.position[i] for i in (0, 1))
-            at, k = [c * x + s * y, c * y - s * x], figure.index[name]
-            break
-    else:
-        at, k = list(joint.position), -1
+    bodies = figure.scene.bodies
+    moving = [k for k, body in enumerate(bodies) if body.id in joint.bodies and not body.anchored]
+    at = (
+        carried(bodies[moving[0]], np.array([joint.position]))[0].tolist() if moving else list(joint.position)
+    )
+    k = moving[0] if moving else -1
     return {"body": k, "at": at, "world": list(joint.position), "ground": None in joint.bodies}
-
-
-def _ink(figure: Figure, sketch: Sketch | None) -> list[list[list[float]]]:
-    """The person's strokes in metres, to a millimetre of a page ten metres wide."""
-    view = figure.scene.view
-    if sketch is None or view is None:
-        return []
-    world = (stroke.points * (1, -1) / view.pixels_per_metre for stroke in sketch.strokes)
-    return [np.round(points, 3).tolist() for points in world]
 
 
 def _css(color: RGB) -> str:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cli.render.animation import changes
+from cli.render.backdrop import round_length
 from cli.render.canvas import Canvas
-from cli.render.figure import Figure, round_length
-from cli.render.video import changes
+from cli.render.figure import Figure
 
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory

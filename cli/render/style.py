@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from sim.scene import Scene
 
-__all__ = ["CLEAN", "RGB", "Style", "body_colors", "mix", "rgb"]
+__all__ = ["CLEAN", "RGB", "STYLES", "Paints", "Style", "body_paints", "mix", "rgb"]
 
 RGB: TypeAlias = tuple[int, int, int]
 
@@ -21,19 +21,50 @@ class Style:
     """Colours as (red, green, blue).
 
     Attributes:
-        paper: the background.  ink: text, scale bar, gravity.  drawn: the person's strokes, lying under it.
+        paper: the background.  ink: text, scale bar, gravity, pivots.
+        drawn: the person's strokes, lying under the bodies.
         signal: what needs attention.
+        edge: of outlines, mixed with the body's colour.
+        pale, anchored_pale: share of paper in the filling of a body that moves, and of one that does not.
         line: width of outlines in a picture 720 pixels high [pixels].
+        grid: colour of squares on the paper, or None.
+        moves_ink: whether bodies are shown as the person's own strokes.
     """
 
     paper: RGB = (252, 251, 248)
     ink: RGB = (45, 48, 56)
     drawn: RGB = (206, 210, 218)
     signal: RGB = (214, 40, 57)
+    edge: RGB = (45, 48, 56)
+    pale: float = 0.12
+    anchored_pale: float = 0.72
     line: float = 2.2
+    grid: RGB | None = None
+    moves_ink: bool = False
 
 
 CLEAN = Style()
+INK = Style(drawn=(45, 48, 56), pale=0.78, anchored_pale=0.88, moves_ink=True)
+BLUEPRINT = Style(
+    paper=(24, 58, 112),
+    ink=(236, 242, 250),
+    drawn=(52, 88, 144),
+    edge=(255, 255, 255),
+    pale=0.72,
+    anchored_pale=0.86,
+    line=2.0,
+    grid=(36, 71, 127),
+)
+STYLES = {"clean": CLEAN, "ink": INK, "blueprint": BLUEPRINT}
+
+
+class Paints(NamedTuple):
+    """The colours of one body; stripes: of its hatching when it is anchored."""
+
+    color: RGB
+    filling: RGB
+    edge: RGB
+    stripes: RGB
 
 
 def rgb(color: str) -> RGB:
@@ -46,15 +77,17 @@ def mix(a: RGB, b: RGB, share: float) -> RGB:
     return tuple(round(x + (y - x) * share) for x, y in zip(a, b, strict=True))  # type: ignore[return-value]
 
 
-def body_colors(scene: Scene) -> list[RGB]:
-    """Each body's own colour, or the next of the palette; anchored bodies stay grey."""
-    colors, used = [], 0
+def body_paints(scene: Scene, style: Style) -> list[Paints]:
+    """Each body in its own colour, or the next of the palette; anchored bodies stay grey."""
+    paints, used = [], 0
     for body in scene.bodies:
         if body.color is not None:
-            colors.append(rgb(body.color))
+            color = rgb(body.color)
         elif body.anchored:
-            colors.append(rgb(FIXED))
+            color = rgb(FIXED)
         else:
-            colors.append(rgb(PALETTE[used % len(PALETTE)]))
+            color = rgb(PALETTE[used % len(PALETTE)])
             used += 1
-    return colors
+        filling = mix(color, style.paper, style.anchored_pale if body.anchored else style.pale)
+        paints.append(Paints(color, filling, mix(color, style.edge, 0.62), mix(color, style.edge, 0.12)))
+    return paints

@@ -11,9 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cli.render.backdrop import round_length
 from cli.render.camera import fit, outside
 from cli.render.canvas import BLOOM, ONE, Canvas, fixed
-from cli.render.figure import Figure, round_length
+from cli.render.figure import Figure
 from cli.render.outline import inset, is_convex, segment, signed_area
 from cli.render.still import strobe
 from cli.render.style import CLEAN, mix

@@ -11,10 +11,12 @@ import pytest
 from numpy.typing import NDArray
 
 from cli.main import main
+from cli.render.animation import changes, clock, drawn
 from cli.render.camera import fit
 from cli.render.figure import Figure
 from cli.render.style import CLEAN
-from cli.render.video import PIXELS, Sheet, changes, clock, drawn, write_video
+from cli.render.video import sheet as new_sheet
+from cli.render.video import write_video
 from sim.scene import Scene
 from sim.trajectory import Trajectory
 
@@ -110,7 +112,7 @@ def spinning(scene: Scene) -> Scene:
 def test_redrawing_only_what_changed_leaves_no_trace(scene: Scene, straight: Straight) -> None:
     figure = Figure(spinning(scene), fit(scene, (640, 480)), CLEAN)
     motion = straight(scene, duration=1.5, fps=20)
-    sheets = [Sheet(av.VideoFrame(640, 480, PIXELS)) for _ in range(2)]
+    sheets = [new_sheet((640, 480)) for _ in range(2)]
     numbers = []
     for k, sheet in drawn(figure, motion, 20, lambda: sheets[len(numbers) % 2]):
         numbers.append(k)

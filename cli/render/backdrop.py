@@ -1,0 +1,164 @@
+"""What stands still in a picture: paper, ink, anchored bodies, supports; scale and gravity."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from cli.render.camera import Camera
+from cli.render.canvas import BLOOM, ONE, SHIFT, Canvas, Points, fixed
+from cli.render.outline import inset
+from cli.render.pen import Pen
+from cli.render.style import RGB, body_paints, mix
+from sim.scene import Joint, Scene
+
+__all__ = ["annotate", "backdrop", "length_label", "round_length"]
+
+Array = NDArray[np.float64]
+
+
+def backdrop(scene: Scene, camera: Camera, pen: Pen, still: list[Array], moved: list[Array]) -> Canvas:
+    """The background of every frame.
+
+    still: the person's strokes that stay where they are, moved: those that a body takes along, both on the
+    page's world [m], shape (n, 2).
+    """
+    canvas = Canvas.plain(camera.size, pen.style.paper)
+    if pen.style.grid is not None:
+        _draw_grid(canvas, camera, pen, pen.style.grid)
+    if pen.style.moves_ink:
+        _draw_bodies(canvas, scene, camera, pen)
+        _draw_strokes(canvas, camera, pen, still, pen.style.ink)
+    else:
+        _draw_strokes(canvas, camera, pen, still + moved, pen.style.drawn)
+        _draw_bodies(canvas, scene, camera, pen)
+        for joint in scene.joints:
+            _draw_support(canvas, camera, pen, joint)
+    return canvas
+
+
+def _draw_strokes(canvas: Canvas, camera: Camera, pen: Pen, strokes: list[Array], color: RGB) -> None:
+    import cv2
+
+    lines = [fixed(camera.pixels(stroke)) for stroke in strokes]
+    cv2.polylines(canvas.planes[0], lines, False, color[::-1], max(1, round(pen.unit)), cv2.LINE_AA, SHIFT)
+
+
+def _draw_grid(canvas: Canvas, camera: Camera, pen: Pen, color: RGB) -> None:
+    """Squares of a round length, 5 to 12 of them in the picture's height."""
+    width, height = camera.size
+    step = round_length(0.2 * min(width, height) / camera.scale) * camera.scale
+    left, top = (-camera.corner[0] * camera.scale) % step, (camera.corner[1] * camera.scale) % step
+    for x in np.arange(left, width, step):
+        pen.line(canvas, np.array([x, 0.0]), np.array([x, float(height)]), 1.0, color)
+    for y in np.arange(top, height, step):
+        pen.line(canvas, np.array([0.0, y]), np.array([float(width), y]), 1.0, color)
+
+
+def _draw_bodies(canvas: Canvas, scene: Scene, camera: Camera, pen: Pen) -> None:
+    """Anchored bodies: pale, with the hatching that engineers draw for what is fixed."""
+    for body, paints in zip(scene.bodies, body_paints(scene, pen.style), strict=True):
+        if not body.anchored:
+            continue
+        outline = camera.pixels(np.array(body.outline()))
+        if pen.style.moves_ink:
+            canvas.polygon(fixed(inset(outline, BLOOM)), paints.filling)
+            continue
+        canvas.polygon(fixed(inset(outline, BLOOM)), paints.edge)
+        inner = fixed(inset(outline, BLOOM + pen.width))
+        canvas.polygon(inner, paints.filling)
+        _hatch(canvas, inner, pen.unit, paints.stripes)
+
+
+def _hatch(canvas: Canvas, outline: Points, unit: float, color: RGB) -> None:
+    """Stripes at 45 degrees within an outline (fixed-point)."""
+    import cv2
+
+    height, width = canvas.planes[0].shape[:2]
+    left, top = np.clip(outline.min(axis=0) // ONE - 1, 0, (width, height)).tolist()
+    right, bottom = np.clip(outline.max(axis=0) // ONE + 2, 0, (width, height)).tolist()
+    if right <= left or bottom <= top:
+        return
+    mask = np.zeros((bottom - top, right - left), np.uint8)
+    cv2.fillPoly(mask, [outline - np.array([left, top], np.int32) * ONE], 255, cv2.LINE_AA, SHIFT)
+    period = 11.0 * unit
+    diagonal = np.arange(left + top, right + bottom) / math.sqrt(2)
+    from_stripe = np.abs(diagonal % period - period / 2)
+    profile = (np.clip(0.75 * unit + 0.5 - from_stripe, 0, 1) * 255).astype(np.uint8)
+    # A pixel's stripe follows from its row plus its column: rows of the profile, each one further on.
+    stripes = sliding_window_view(profile[: sum(mask.shape) - 1], mask.shape[1])
+    striped: Any = cv2.multiply(mask, np.ascontiguousarray(stripes), scale=1 / 255)
+    canvas.blend(striped, (left, top), color)
+
+
+def _draw_support(canvas: Canvas, camera: Camera, pen: Pen, joint: Joint) -> None:
+    """A pivot on the background stands on the support of engineering drawings, a triangle."""
+    if None not in joint.bodies:
+        return
+    x, y = camera.pixels(np.array(joint.position))
+    u, ink = pen.unit, pen.style.ink
+    half, tall = 15 * u, 24 * u
+    triangle = np.array([[x, y], [x + half, y + tall], [x - half, y + tall]])
+    canvas.polygon(fixed(inset(triangle, BLOOM)), ink)
+    canvas.polygon(fixed(inset(triangle, BLOOM + pen.width)), mix(pen.style.paper, ink, 0.12))
+    ends = np.array([[x - 1.5 * half, y + tall], [x + 1.5 * half, y + tall]])
+    pen.line(canvas, ends[0], ends[1], pen.width, ink)
+    for k in range(6):
+        top = ends[0] + (ends[1] - ends[0]) * ((k + 0.7) / 6)
+        pen.line(canvas, top, top + np.array([-6, 8]) * u, 0.7 * pen.width, ink)
+
+
+# ---------------------------------------------------------------- scale and gravity
+
+
+def annotate(canvas: Canvas, scene: Scene, scale: float, pen: Pen) -> None:
+    """The scale bar in the lower left and gravity in the upper right corner; scale: [pixels/m]."""
+    _draw_scale(canvas, scale, pen)
+    _draw_gravity(canvas, scene.gravity, pen)
+
+
+def _draw_scale(canvas: Canvas, scale: float, pen: Pen) -> None:
+    """A bar of a round length, a tenth to a fifth of the picture's width, on a plate."""
+    width, height = pen.size
+    metres = round_length(0.2 * width / scale)
+    u, ink = pen.unit, mix(pen.style.ink, pen.style.paper, 0.15)
+    left, bottom = 26 * u, height - 24 * u
+    right = left + metres * scale
+    plate = np.full((2 * round(24 * u), 2 * round((right - left + 28 * u) / 2)), 200, np.uint8)
+    canvas.blend(plate, (2 * round((left - 14 * u) / 2), 2 * round((bottom - 36 * u) / 2)), pen.style.paper)
+    pen.line(canvas, np.array([left, bottom]), np.array([right, bottom]), pen.width, ink)
+    for x in (left, right):
+        pen.line(canvas, np.array([x, bottom - 5 * u]), np.array([x, bottom + 5 * u]), pen.width, ink)
+    pen.write(canvas, length_label(metres), (left, bottom - 32 * u), 14)
+
+
+def _draw_gravity(canvas: Canvas, gravity: tuple[float, float], pen: Pen) -> None:
+    """An arrow the way things fall, or that they do not."""
+    u, ink = pen.unit, mix(pen.style.ink, pen.style.paper, 0.15)
+    g = np.array(gravity) * (1, -1)
+    size = float(np.hypot(*g))
+    if size == 0:
+        pen.write(canvas, "no gravity", (pen.size[0] - 130 * u, 20 * u), 14)
+        return
+    along = g / size
+    middle = np.array([pen.size[0] - 48 * u, 52 * u])
+    pen.arrow(canvas, middle - along * 26 * u, middle + along * 26 * u, 1.4 * pen.width, ink)
+    beside = middle + np.array([-30 * u, -8 * u]) + (abs(along[0]) > 0.7) * np.array([24 * u, 26 * u])
+    pen.write(canvas, "g", (float(beside[0]), float(beside[1])), 14)
+
+
+def round_length(metres: float) -> float:
+    """The longest of 1, 2 or 5 times a power of ten that is no longer."""
+    power = 10.0 ** math.floor(math.log10(metres))
+    return next(n * power for n in (5, 2, 1) if n * power <= metres * (1 + 1e-9))
+
+
+def length_label(metres: float) -> str:
+    for unit, size in (("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)):
+        if metres >= size * (1 - 1e-9):
+            return f"{metres / size:g} {unit}"
+    return f"{metres:g} m"

@@ -1,0 +1,109 @@
+"""The .svg output: the scene as it is drawn, in metres turned to the picture's pixels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from cli.render.backdrop import length_label, round_length
+from cli.render.figure import Figure
+from cli.render.ink import Ink
+from cli.render.style import RGB, Paints
+from sim.scene import Circle
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["svg"]
+
+
+def svg(figure: Figure, ink: Ink | None = None) -> bytes:
+    """The scene before it moves, as SVG 1.1."""
+    (width, height), style, u = figure.camera.size, figure.style, figure.pen.unit
+    line = figure.pen.width
+    out = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
+        f'viewBox="0 0 {width} {height}" stroke-linejoin="round" stroke-linecap="round" fill="none">',
+        f'<rect width="{width}" height="{height}" fill="{_css(style.paper)}"/>',
+        f'<g stroke="{_css(style.drawn)}" stroke-width="{u:g}">',
+        *(f'<polyline points="{_points(figure.camera.pixels(stroke))}"/>' for _, stroke in ink or []),
+        "</g>",
+    ]
+    for k, body in enumerate(figure.scene.bodies):
+        paints = figure.paints[k]
+        fill = f"url(#hatch{k})" if body.anchored else _css(paints.filling)
+        if body.anchored:
+            out.append(_hatch(f"hatch{k}", 11 * u, paints))
+        look = f'fill="{fill}" stroke="{_css(paints.edge)}" stroke-width="{line:g}"'
+        named = f"<title>{_text(body.id)}</title>"
+        if isinstance(body.shape, Circle):
+            x, y = figure.camera.pixels(np.array(body.position))
+            r = body.shape.radius * figure.camera.scale
+            end = f"M{x:.2f} {y:.2f}l{r * np.cos(body.angle):.2f} {-r * np.sin(body.angle):.2f}"
+            mark = (
+                ""
+                if body.anchored
+                else f'<path d="{end}" stroke="{_css(paints.edge)}" stroke-width="{line:g}"/>'
+            )
+            out.append(f'<g><circle cx="{x:.2f}" cy="{y:.2f}" r="{r:.2f}" {look}/>{mark}{named}</g>')
+        else:
+            corners = _points(figure.camera.pixels(np.array(body.outline())))
+            out.append(f'<polygon points="{corners}" {look}>{named}</polygon>')
+    for joint in figure.scene.joints:
+        x, y = figure.camera.pixels(np.array(joint.position))
+        rings = f'fill="{_css(style.paper)}" stroke="{_css(style.ink)}" stroke-width="{line:g}"'
+        out.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{7 * u:g}" {rings}/>')
+        out.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{2.4 * u:g}" fill="{_css(style.ink)}"/>')
+    return "\n".join([*out, *_annotations(figure), "</svg>\n"]).encode()
+
+
+def _hatch(name: str, period: float, paints: Paints) -> str:
+    """The pattern of what is fixed."""
+    return (
+        f'<pattern id="{name}" patternUnits="userSpaceOnUse" width="{period:g}" height="{period:g}" '
+        f'patternTransform="rotate(45)"><rect width="{period:g}" height="{period:g}" '
+        f'fill="{_css(paints.filling)}"/><path d="M0 0V{period:g}" stroke="{_css(paints.stripes)}" '
+        f'stroke-width="{0.25 * period:g}"/></pattern>'
+    )
+
+
+def _annotations(figure: Figure) -> list[str]:
+    """The scale bar and gravity."""
+    (width, height), u, ink = figure.camera.size, figure.pen.unit, _css(figure.style.ink)
+    metres = round_length(0.2 * width / figure.camera.scale)
+    x, y, long = 26 * u, height - 24 * u, metres * figure.camera.scale
+    font = f'font-family="sans-serif" font-size="{18 * u:g}" fill="{ink}"'
+    bar = f"M{x:g} {y - 5 * u:g}v{10 * u:g}m0 {-5 * u:g}h{long:.2f}m0 {-5 * u:g}v{10 * u:g}"
+    out = [
+        f'<path d="{bar}" stroke="{ink}" stroke-width="{figure.pen.width:g}"/>',
+        f'<text x="{x:g}" y="{y - 12 * u:g}" {font}>{length_label(metres)}</text>',
+    ]
+    g = np.array(figure.scene.gravity) * (1, -1)
+    if not g.any():
+        return [
+            *out,
+            f'<text x="{width - 24 * u:g}" y="{34 * u:g}" text-anchor="end" {font}>no gravity</text>',
+        ]
+    along = g / np.hypot(*g)
+    across = np.array([-along[1], along[0]])
+    middle = np.array([width - 48 * u, 52 * u])
+    tip = middle + along * 26 * u
+    arrow = [middle - along * 26 * u, tip]
+    head = [tip + (-along + 0.5 * side * across) * 13 * u for side in (1, -1)]
+    strokes = (arrow, [head[0], tip, head[1]])
+    lines = "".join(f'<polyline points="{_points(np.array(stroke))}"/>' for stroke in strokes)
+    return [*out, f'<g stroke="{ink}" stroke-width="{1.4 * figure.pen.width:g}">{lines}</g>']
+
+
+def _points(pixels: NDArray[np.float64]) -> str:
+    return " ".join(f"{x:.2f},{y:.2f}" for x, y in pixels)
+
+
+def _text(text: str) -> str:
+    return quoteattr(text)[1:-1]
+
+
+def _css(color: RGB) -> str:
+    return "#{:02x}{:02x}{:02x}".format(*color)
