@@ -18,7 +18,7 @@ from cli.render.style import mix
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
 
-__all__ = ["Extras", "Sheet", "changes", "clock", "drawn", "frame_count"]
+__all__ = ["PLAIN", "Extras", "Sheet", "changes", "clock", "drawn", "frame_count"]
 
 CHUNK = 64  # frames whose poses are computed at once: memory does not grow with the length
 VELOCITY, FORCE = (68, 119, 170), (214, 40, 57)
@@ -37,6 +37,9 @@ class Extras:
     trails: bool = False
     vectors: bool = False
     follow: int | None = None
+
+
+PLAIN = Extras()
 
 
 class Sheet:
@@ -61,7 +64,7 @@ def drawn(
     motion: Trajectory,
     fps: float,
     take: Callable[[], Sheet],
-    extras: Extras = Extras(),
+    extras: Extras = PLAIN,
 ) -> Iterator[tuple[int, Sheet]]:
     """The number and the sheet of every frame that shows something new, and of the last.
 
@@ -94,7 +97,7 @@ def drawn(
             if extras.follow is not None:
                 figure.annotate(sheet.canvas)
             clock_box = figure.caption(sheet.canvas, times[k])
-            all_over = extras != Extras()
+            all_over = extras != PLAIN
             sheet.used = [sheet.whole] if all_over else [boxes[k - start], clock_box]
             yield k, sheet
 
@@ -103,7 +106,7 @@ def changes(
     figure: Figure,
     motion: Trajectory,
     count: int,
-    extras: Extras = Extras(),
+    extras: Extras = PLAIN,
 ) -> NDArray[np.bool_]:
     """Which of the first `count` samples show a picture unlike that of the sample before; the first does."""
     changed = np.ones(count, bool)

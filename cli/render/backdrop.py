@@ -122,17 +122,19 @@ def annotate(canvas: Canvas, scene: Scene, scale: float, pen: Pen) -> None:
 
 
 def _draw_scale(canvas: Canvas, scale: float, pen: Pen) -> None:
-    """A bar of a round length, a tenth to a fifth of the picture's width, on a plate."""
+    """A bar of a round length, a tenth to a fifth of the picture's width."""
     width, height = pen.size
     metres = round_length(0.2 * width / scale)
     u, ink = pen.unit, mix(pen.style.ink, pen.style.paper, 0.15)
     left, bottom = 26 * u, height - 24 * u
     right = left + metres * scale
-    plate = np.full((2 * round(24 * u), 2 * round((right - left + 28 * u) / 2)), 200, np.uint8)
-    canvas.blend(plate, (2 * round((left - 14 * u) / 2), 2 * round((bottom - 36 * u) / 2)), pen.style.paper)
-    pen.line(canvas, np.array([left, bottom]), np.array([right, bottom]), pen.width, ink)
-    for x in (left, right):
-        pen.line(canvas, np.array([x, bottom - 5 * u]), np.array([x, bottom + 5 * u]), pen.width, ink)
+    bar = [
+        ((left, bottom), (right, bottom)),
+        *(((x, bottom - 5 * u), (x, bottom + 5 * u)) for x in (left, right)),
+    ]
+    for halo, color in ((4 * u, pen.style.paper), (0.0, ink)):
+        for a, b in bar:
+            pen.line(canvas, np.array(a), np.array(b), pen.width + halo, color)
     pen.write(canvas, length_label(metres), (left, bottom - 32 * u), 14)
 
 

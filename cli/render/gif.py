@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cli.render.animation import Extras, Sheet, drawn, frame_count
+from cli.render.animation import PLAIN, Extras, Sheet, drawn, frame_count
 from cli.render.canvas import Canvas
 from cli.render.figure import Figure
 
@@ -30,7 +30,7 @@ def write_gif(
     figure: Figure,
     motion: Trajectory,
     fps: float,
-    extras: Extras = Extras(),  # noqa: B008  (frozen)
+    extras: Extras = PLAIN,
     progress: Callable[[float], None] = lambda _: None,
 ) -> None:
     """Write a GIF to `path`; of more than 25 frames a second only so many are taken."""

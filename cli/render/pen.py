@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,8 +54,13 @@ class Pen:
 
     def write(self, canvas: Canvas, text: str, corner: tuple[float, float], height: float) -> Box:
         """Letters with their upper left corner there [pixels]; returns the box that was written on."""
+        import cv2
+
         x, y = (2 * round(c / 2) for c in corner)
         mask = lettering(text, max(8, round(height * self.unit)))
+        reach = 2 * round(2 * self.unit) + 1
+        halo: Any = cv2.dilate(mask, np.ones((reach, reach), np.uint8))
+        canvas.blend(halo, (x, y), self.style.paper)  # legible on whatever lies under it
         canvas.blend(mask, (x, y), self.style.ink)
         right, bottom = x + mask.shape[1], y + mask.shape[0]
         return (x, y, min(right, self.size[0]), min(bottom, self.size[1]))

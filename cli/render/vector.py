@@ -74,7 +74,10 @@ def _annotations(figure: Figure) -> list[str]:
     (width, height), u, ink = figure.camera.size, figure.pen.unit, _css(figure.style.ink)
     metres = round_length(0.2 * width / figure.camera.scale)
     x, y, long = 26 * u, height - 24 * u, metres * figure.camera.scale
-    font = f'font-family="sans-serif" font-size="{18 * u:g}" fill="{ink}"'
+    font = (
+        f'font-family="sans-serif" font-size="{18 * u:g}" fill="{ink}" '
+        f'stroke="{_css(figure.style.paper)}" stroke-width="{4 * u:g}" paint-order="stroke"'
+    )
     bar = f"M{x:g} {y - 5 * u:g}v{10 * u:g}m0 {-5 * u:g}h{long:.2f}m0 {-5 * u:g}v{10 * u:g}"
     out = [
         f'<path d="{bar}" stroke="{ink}" stroke-width="{figure.pen.width:g}"/>',

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cli.render.animation import Extras, Sheet, drawn, frame_count
+from cli.render.animation import PLAIN, Extras, Sheet, drawn, frame_count
 from cli.render.canvas import Canvas
 from cli.render.figure import Figure
 
@@ -60,7 +60,7 @@ def write_video(
     motion: Trajectory,
     fps: float,
     ending: str = ".mp4",
-    extras: Extras = Extras(),  # noqa: B008  (frozen)
+    extras: Extras = PLAIN,
     progress: Callable[[float], None] = lambda _: None,
 ) -> None:
     """Write a video to `path`; `ending` says which kind, .mp4 (H.264) or .webm (VP9)."""

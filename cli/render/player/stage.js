@@ -187,10 +187,6 @@ class Stage {
     const { corner: [left, top], size: [, height], scale, bar } = this.recording;
     const u = this.unit;
     const [x, y] = [left + 26 * u, top - height / scale + 24 * u];
-    c.globalAlpha = 0.8;
-    c.fillStyle = this.recording.paper;
-    c.fillRect(x - 14 * u, y - 12 * u, bar.metres + 28 * u, 48 * u);
-    c.globalAlpha = 1;
     c.beginPath();
     this.path([[x, y + 5 * u], [x, y - 5 * u]]);
     this.path([[x, y], [x + bar.metres, y]]);
@@ -228,6 +224,9 @@ class Stage {
     c.scale(this.unit, -this.unit);
     c.fillStyle = this.recording.dark;
     c.font = `${height}px system-ui, sans-serif`;
+    c.strokeStyle = this.recording.paper;
+    c.lineWidth = 4;
+    c.strokeText(text, 0, 0);
     c.fillText(text, 0, 0);
     c.restore();
   }
