@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import Chains
 
-__all__ = ["SIGHT", "Edge", "End", "Graph", "build_graph", "heading"]
+__all__ = ["SIGHT", "Edge", "End", "Graph", "bend", "build_graph", "heading"]
 
 Points = NDArray[np.float64]
 SIGHT = 4.0  # pen widths along a branch that show where it is going
@@ -110,6 +110,26 @@ def heading(points: Points, centre: Points, reach: float, sight: float) -> tuple
     if direction @ (window[-1] - window[0]) < 0:
         direction = -direction
     return window[0], direction
+
+
+def bend(points: Points, start: Points, sight: float) -> float:
+    """The curvature of a branch from `start` on, over twice `sight`, leftwards positive [1/pixel].
+
+    It is 0 where too little of the branch is there to tell.
+    """
+    along = np.hypot(*(points - start).T)
+    first = int(np.argmin(along))
+    leaves = np.flatnonzero(along[first:] > 2 * sight)
+    window = points[first : first + (int(leaves[0]) if len(leaves) else len(points))] - start
+    far = window[-1]
+    reach = float(np.hypot(*far))
+    if len(window) < 5 or reach < sight:
+        return 0.0
+    u = far / reach
+    x, y = window @ u, window @ np.array([-u[1], u[0]])
+    # y = k x (x - reach) / 2 is the parabola through both ends
+    shape = x * (x - reach) / 2
+    return float(shape @ y / (shape @ shape))
 
 
 def _drop_overshoots(graph: Graph, pen: float) -> None:

@@ -14,15 +14,17 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import SIGHT, End, Graph, heading
+from sketch.scan.graph import SIGHT, End, Graph, bend, heading
 
-__all__ = ["Branch", "Junction", "find_junctions", "turn_cost"]
+__all__ = ["LONELY", "Branch", "Junction", "Pairs", "find_junctions", "turn_cost"]
 
 Points = NDArray[np.float64]
+Pairs = list[tuple[int, int]]  # indices of a junction's branches
 
 CROSSING = 1.6  # pen widths: nodes nearer than this are one crossing, which thinning pulled apart
 MERGED = 12.0  # pen widths: the longest bridge that is tried as the ink of two lines
 BRIDGE_COST = 0.06  # for each pen width of a bridge that two lines share
+UNEVEN = 0.5  # weight of the difference in bend between two branches
 LONELY = 1.0  # the cost of an end at a junction, as the square of a turn in radians
 KNOT = 8  # more branches than this are paired greedily
 
@@ -35,12 +37,14 @@ class Branch:
         end: the edge and which of its ends.
         start: [pixels] where it gets clear of the other ink.
         outward: unit vector of its direction there.
+        bend: the angle by which it turns within SIGHT, leftwards positive [rad].
         centre: [pixels] of the crossing that it comes from.
     """
 
     end: End
     start: Points
     outward: Points
+    bend: float
     centre: Points
 
 
@@ -81,7 +85,8 @@ def find_junctions(graph: Graph, pen: float) -> list[Junction]:
         reach = max(float(np.max(graph.radius[nodes])), spread + pen / 2)
         for end in ends[k]:
             start, outward = heading(graph.outward(end), centre, reach, SIGHT * pen)
-            branches[k].append(Branch(end, start, outward, centre))
+            curvature = bend(graph.outward(end), start, SIGHT * pen)
+            branches[k].append(Branch(end, start, outward, curvature * SIGHT * pen, centre))
     junctions = _share_bridges(graph, branches, crossing, pen)
     for e in short:
         junctions[_find(junctions, crossing[graph.edges[e].ends[0]])][2].append(e)
@@ -140,13 +145,18 @@ def _share_bridges(
 
 
 def turn_cost(a: Branch, b: Branch) -> float:
-    """The square of the angle by which the pen turns on its way from a to b: at once, and on the way."""
+    """What it costs to take b for the continuation of a, as the square of an angle [rad²].
+
+    It is the angle by which the pen turns, at once and on its way across the gap, and that by which one of
+    them bends otherwise than the other: a wheel that touches a plank goes on as round as it was.
+    """
     turn = _angle(-a.outward, b.outward)
     gap = b.start - a.start
+    uneven = UNEVEN * (a.bend + b.bend) ** 2  # seen from a junction, both halves of an arc bend opposite ways
     if np.hypot(*gap) < 1e-9:
-        return turn * turn
+        return turn * turn + uneven
     detour = _angle(-a.outward, gap) + _angle(gap, b.outward)
-    return 0.5 * (turn * turn + detour * detour)
+    return 0.5 * (turn * turn + detour * detour) + uneven
 
 
 def _angle(u: Points, v: Points) -> float:

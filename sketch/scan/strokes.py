@@ -7,9 +7,10 @@ import heapq
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.courses import Course, Links, close_outlines, follow, length
+from sketch.scan.courses import Course, Links, follow, length
 from sketch.scan.graph import End, Graph
 from sketch.scan.junctions import Branch, Junction, find_junctions
+from sketch.scan.outlines import close_outlines
 
 __all__ = ["trace_strokes"]
 
@@ -25,7 +26,7 @@ def trace_strokes(graph: Graph, pen: float) -> list[Points]:
     junctions = find_junctions(graph, pen)
     branch_of = {branch.end: branch for junction in junctions for branch in junction.branches}
     inner = {e for junction in junctions for e in junction.bridges}
-    close_outlines(graph, junctions, inner, pen)
+    close_outlines(graph, junctions, pen)
     links: Links = {}
     for junction in junctions:
         for i, j in junction.pairs:
