@@ -4,6 +4,7 @@
 
 #define BUCKET_LIMIT 400.0  /* events of one body that may come in a burst */
 #define BUCKET_LEAK 200.0   /* and a second in the long run */
+#define MOST_REPEATS 30     /* events of one body at one moment */
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
 #define PAIRS_OF_FEW 1e6    /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
@@ -42,6 +43,8 @@ void exact_destroy(Exact *e) {
     free(e->impulse);
     free(e->touching);
     free(e->closed);
+    free(e->before.pair);
+    free(e->after.pair);
     system_destroy(&e->group);
     system_destroy(&e->part);
     smooth_destroy(&e->smooth);
@@ -152,9 +155,10 @@ int island_advance(Exact *e, int32_t index, double from) {
 /* Whether a body's events come so fast that it belongs to the crowd. */
 static bool overflows(Exact *e, int32_t body, double time) {
     Track *t = &e->track[body];
+    t->repeats = time - t->bucket_time <= 1e-12 * (1 + time) ? t->repeats + 1 : 0;
     t->bucket = fmax(0, t->bucket - BUCKET_LEAK * (time - t->bucket_time)) + 1;
     t->bucket_time = time;
-    return t->bucket > BUCKET_LIMIT;
+    return t->bucket > BUCKET_LIMIT || t->repeats > MOST_REPEATS;
 }
 
 /* Whether the search for touches costs more than stepping all bodies as a crowd would.  An event asks about all bodies, a

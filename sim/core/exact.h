@@ -26,7 +26,14 @@ typedef struct Track {
     double touch_time; /* first touch with anything, as far as the motions reach */
     int32_t partner;
     double bucket, bucket_time; /* how many events it had lately */
+    int32_t repeats;            /* and at this very moment */
 } Track;
+
+/* Pairs of shapes, as keys. */
+typedef struct PairList {
+    uint64_t *pair;
+    int32_t count, capacity;
+} PairList;
 
 typedef struct Exact {
     World *world;
@@ -49,6 +56,7 @@ typedef struct Exact {
     int32_t touching_capacity;
     const Feature **closed;
     int32_t closed_capacity;
+    PairList before, after; /* pairs in contact, before an event and after it */
     bool *changed;
     double spent, spent_time; /* pairs looked at lately, for the budget */
 } Exact;
@@ -79,6 +87,12 @@ int group_reform(Exact *exact, double time);
 
 /* Put a body into the group with all that its motion hangs on: its island, its joints, what touches it. */
 int group_gather(Exact *exact, int32_t body, double time);
+
+/* change.c: the contacts of the group's islands, to be called before those are dissolved; what is different now that the
+ * contacts' modes are known; a body that came to rest. */
+int change_note_before(Exact *exact);
+int change_tell_contacts(Exact *exact, double time);
+int change_tell_rest(Exact *exact, int32_t body, double time, Vec at);
 
 /* Set the group's bodies down where they are, for the crowd to take up. */
 void group_send_to_crowd(Exact *exact, double time);

@@ -132,18 +132,13 @@ static int resolve(Exact *e, double time) {
         Vec p = e->impulse[k];
         if (p.x == 0 && p.y == 0) continue;
         const Feature *f = &g->contact[k].feature;
-        int32_t a = g->place_of[f->body_a], b = g->place_of[f->body_b];
-        Placed still = {{{0, 0}, 1, 0}, {0, 0}, 0};
-        Gap gap = feature_gap(f, a >= 0 ? &g->placed[a] : &still, b >= 0 ? &g->placed[b] : &still);
+        Vec point = contact_point(g, k);
         SimEvent event = {
             .time = time,
             .kind = SIM_IMPACT,
             .body = {e->world->shape[f->shape_b].source, e->world->shape[f->shape_a].source},
-            .point = {gap.point.x, gap.point.y},
+            .point = {point.x, point.y},
             .impulse = {p.x * row[0].ja[0] + p.y * row[1].ja[0], p.x * row[0].ja[1] + p.y * row[1].ja[1]}};
-        if (row->a < 0)
-            event.impulse[0] = -p.x * row[0].jb[0] - p.y * row[1].jb[0],
-            event.impulse[1] = -p.x * row[0].jb[1] - p.y * row[1].jb[1];
         status = record_event(e->recorder, &event);
     }
     return status;
@@ -263,8 +258,9 @@ static int send_off(Exact *e, int32_t root, double time) {
         track->motion = rest ? motion_at_rest(&state, time) : motion_in_flight(&state, time, e->world->gravity);
         track->island = index;
         e->changed[body] = true;
+        if (rest && held && e->world->body[body].mode != MODE_REST) status = change_tell_rest(e, body, time, state.p);
         e->world->body[body].mode = rest ? MODE_REST : held ? MODE_SMOOTH : MODE_FLIGHT;
-        if (island) status = island_add(island, &body, NULL);
+        if (island && status == SIM_OK) status = island_add(island, &body, NULL);
     }
     e->world->profile.rests += rest && held;
     e->world->profile.flights += !rest && !held;
@@ -300,10 +296,11 @@ static bool all_still(const Exact *e) {
 int group_reform(Exact *e, double time) {
     System *g = &e->group;
     e->world->profile.events += 1;
+    int status = change_note_before(e);
     for (int32_t i = 0; i < g->count; i++)
         if (e->track[g->member[i]].island >= 0) island_dissolve(e, e->track[g->member[i]].island);
     bool crowded = e->world->body[g->member[0]].mode == MODE_CROWD;
-    int status = crowded ? SIM_OK : find_contacts(e);
+    if (status == SIM_OK && !crowded) status = find_contacts(e);
     if (status != SIM_OK) return status;
     if (crowded || g->contact_count > (all_still(e) ? MOST_CONTACTS_REST : MOST_CONTACTS)) {
         group_send_to_crowd(e, time);
@@ -317,6 +314,7 @@ int group_reform(Exact *e, double time) {
         group_send_to_crowd(e, time);
         return SIM_OK;
     }
+    if (status == SIM_OK) status = change_tell_contacts(e, time);
     if (status != SIM_OK) return status;
     drop_inactive(g);
     partition(e);

@@ -133,6 +133,11 @@ void system_find_bias(System *s) {
     }
 }
 
+Vec contact_point(const System *s, int32_t k) {
+    const Feature *f = &s->contact[k].feature;
+    return feature_gap(f, placed_of(s, f->body_a), placed_of(s, f->body_b)).point;
+}
+
 double row_speed(const Row *row, const State *state) {
     double speed = 0;
     if (row->a >= 0) {

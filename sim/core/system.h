@@ -55,6 +55,8 @@ double row_speed(const Row *row, const State *state);                  /* J v */
 void row_push(const System *system, const Row *row, double impulse);   /* v += M^-1 F' impulse */
 double row_coupling(const System *system, const Row *i, const Row *j); /* J_i M^-1 F_j' */
 
+Vec contact_point(const System *system, int32_t contact); /* where it touches, in the scene's frame */
+
 static inline Row *joint_row(const System *s, int32_t k) { return &s->row[2 * k]; }
 static inline Row *contact_row(const System *s, int32_t k) { return &s->row[2 * s->joint_count + 2 * k]; }
 
