@@ -16,7 +16,7 @@ from sim.trajectory import Event, Trajectory
 
 __all__ = ["simulate"]
 
-ABI = 1
+ABI = 2
 MAX_SAMPLES = 10_000_000
 MAX_VALUES = 500_000_000  # 4 GB of samples
 DEFAULT_TOLERANCE = 1e-4
@@ -24,12 +24,11 @@ DEFAULT_TOLERANCE = 1e-4
 _EVENT_KINDS = ("impact", "contact begun", "contact ended", "rest")
 _PROFILE = (
     "total_time",
-    "flight_time",
-    "smooth_time",
-    "event_time",
+    "separate_time",
+    "search_time",
     "impact_time",
+    "smooth_time",
     "crowd_time",
-    "sample_time",
     "flights",
     "events",
     "impacts",

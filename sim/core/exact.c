@@ -1,4 +1,5 @@
 #include "exact.h"
+#include "stopwatch.h"
 
 #include <stdlib.h>
 
@@ -94,6 +95,7 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
 /* Find the first touches of all bodies marked as changed, and of those whose partner was one of them. */
 static void find_touches(Exact *e, double from) {
     int32_t n = e->world->body_count;
+    double start = seconds_now();
     for (int32_t i = 1; i < n; i++)
         if (!e->changed[i] && is_tracked(e, i) && isfinite(e->track[i].touch_time) && e->changed[e->track[i].partner])
             e->changed[i] = true; /* its partner goes another way now: look at all its pairs again */
@@ -106,6 +108,7 @@ static void find_touches(Exact *e, double from) {
             if (j != i && is_tracked(e, j) && !(e->changed[j] && j < i)) find_touch(e, i, j, from);
     }
     for (int32_t i = 1; i < n; i++) e->changed[i] = false;
+    e->world->profile.search_time += seconds_now() - start;
 }
 
 /* ---------------------------------------------------------------- islands */
@@ -133,6 +136,7 @@ static int load_part(Exact *e, const Island *island, double time) {
 
 int island_advance(Exact *e, int32_t index, double from) {
     Island *island = &e->island[index];
+    double start = seconds_now();
     int status = load_part(e, island, from);
     if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
     if (status == SIM_OK) status = smooth_project(&e->smooth, &e->part);
@@ -147,6 +151,7 @@ int island_advance(Exact *e, int32_t index, double from) {
         e->changed[island->member[k]] = true;
     }
     e->world->profile.smooth_steps += 1;
+    e->world->profile.smooth_time += seconds_now() - start;
     return status;
 }
 

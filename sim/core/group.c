@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "exact.h"
+#include "stopwatch.h"
 
 #define MOST_CONTACTS 12       /* of a group in motion: beyond that the crowd is cheaper */
 #define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
@@ -307,9 +308,11 @@ int group_reform(Exact *e, double time) {
         return SIM_OK;
     }
     system_find_joints(g);
+    double start = seconds_now();
     status = settle_low_bounces(e, time);
     if (status == SIM_OK) status = resolve(e, time);
     if (status == SIM_OK) status = find_modes(&e->solver, g, &e->slack, e->acceleration);
+    e->world->profile.impact_time += seconds_now() - start;
     if (status == SIM_BAD_INPUT) { /* contacts that admit no rigid motion: the crowd's soft ones do */
         group_send_to_crowd(e, time);
         return SIM_OK;

@@ -1,9 +1,9 @@
 /* The public interface, and a run from its start to its end. */
 #include <stdlib.h>
-#include <time.h>
 
 #include "crowd.h"
 #include "exact.h"
+#include "stopwatch.h"
 
 struct Sim {
     World world;
@@ -61,12 +61,6 @@ void sim_events(const Sim *sim, SimEvent *out) {
     for (int64_t k = 0; k < sim->recorder.event_count; k++) out[k] = sim->recorder.event[k];
 }
 
-static double now(void) {
-    struct timespec t;
-    timespec_get(&t, TIME_UTC);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* ---------------------------------------------------------------- the crowd beside the rest */
 
 static bool has_crowd(const World *world) {
@@ -102,9 +96,9 @@ static int step_crowd(Sim *sim, double from, double to, double tolerance) {
     if (!sim->crowd && !(sim->crowd = crowd_create(world))) return SIM_OUT_OF_MEMORY;
     for (int32_t i = 1; i < world->body_count; i++)
         if (sim->entering[i]) world->body[i].mode = MODE_SMOOTH;
-    double start = now();
+    double start = seconds_now();
     int status = crowd_step(sim->crowd, world, to - from, tolerance);
-    world->profile.crowd_time += now() - start;
+    world->profile.crowd_time += seconds_now() - start;
     for (int32_t i = 1; i < world->body_count && status == SIM_OK; i++)
         if (sim->entering[i])
             world->body[i].mode = MODE_CROWD;
@@ -162,17 +156,19 @@ static bool find_energy(const Sim *sim, int64_t samples, const double *frames, d
 
 int32_t sim_run(Sim *sim, const SimOptions *options, double *frames, double *energy) {
     World *world = &sim->world;
-    double start = now(), end = (double)(options->sample_count - 1) / options->fps;
+    double start = seconds_now(), end = (double)(options->sample_count - 1) / options->fps;
     int status = SIM_OK;
     if (world->shape_count > 1) status = world_decompose(world);
     if (status == SIM_OK && world->shape_count > 1) status = world_separate(world, options->tolerance);
+    double separated = seconds_now();
     if (status == SIM_OK) status = recorder_create(&sim->recorder, world, options, frames);
     if (status == SIM_OK) status = exact_create(&sim->exact, world, &sim->recorder, options->tolerance, end);
     if (status == SIM_OK) status = advance(sim, options, end);
     if (status == SIM_OK && !find_energy(sim, options->sample_count, frames, energy)) status = SIM_NOT_FINITE;
+    world->profile.separate_time = separated - start;
     world->profile.smooth_evals = sim->exact.smooth.evals;
     world->profile.rows = sim->exact.smooth.rows;
-    world->profile.total_time = now() - start;
+    world->profile.total_time = seconds_now() - start;
     if (status == SIM_NOT_FINITE) world->error = "the motion went beyond the range of numbers";
     return status;
 }

@@ -19,7 +19,7 @@
 #define SIM_API __attribute__((visibility("default")))
 #endif
 
-#define SIM_ABI 1 /* goes up with any change below; the caller compares it and sim_struct_size() */
+#define SIM_ABI 2 /* goes up with any change below; the caller compares it and sim_struct_size() */
 
 enum { SIM_OK = 0, SIM_OUT_OF_MEMORY = 1, SIM_BAD_INPUT = 2, SIM_NOT_FINITE = 3 };
 
@@ -61,7 +61,12 @@ enum { SIM_IMPACT = 0, SIM_CONTACT_BEGUN = 1, SIM_CONTACT_ENDED = 2, SIM_REST = 
 
 /* What a run did: a scene that does not need a stage shows zeros there. Times in seconds. */
 typedef struct SimProfile {
-    double total_time, flight_time, smooth_time, event_time, impact_time, crowd_time, sample_time;
+    double total_time;
+    double separate_time;  /* moving apart what was drawn overlapping */
+    double search_time;    /* first touches */
+    double impact_time;    /* impacts, and how contacts go on */
+    double smooth_time;    /* integrating */
+    double crowd_time;     /* stepping the crowd */
     double flights;        /* stretches of free flight */
     double events;         /* times at which something changed */
     double impacts;        /* impacts, several at one time counted once */
