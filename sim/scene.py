@@ -439,6 +439,7 @@ def _unknown(cls: type[msgspec.Struct], raw: dict[str, Any]) -> dict[str, Any]:
 
 def _plain(part: msgspec.Struct) -> dict[str, Any]:
     """A struct as JSON's objects, without what was left open, with the keys that were not ours at the end."""
-    out: dict[str, Any] = msgspec.json.decode(msgspec.json.encode(part))  # tuples become lists
+    # through JSON: tuples become lists, and numpy's numbers plain ones
+    out: dict[str, Any] = msgspec.json.decode(msgspec.json.encode(part, enc_hook=lambda v: v.tolist()))
     extra: dict[str, Any] = out.pop(_KEPT)
     return {k: v for k, v in out.items() if v is not None} | extra
