@@ -10,36 +10,55 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SIDES", "ClosedFit", "OpenFit", "fit_closed", "fit_open"]
+__all__ = ["SIDES", "ArrowFit", "ClosedFit", "Strokes", "depth", "fit_arrow", "fit_closed", "measure", "off_outline"]
 
 Array = NDArray[np.float64]
 
-SAMPLES, SIDES = 64, 14  # as in core/fit.h
+SAMPLES, SIDES, BENDS = 64, 14, 6  # as in core/fit.h and core/strokes.c
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _double, _double, _double, *[_pointer] * 7)(
     ("ink_closed", _lib)
 )
-_open = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _pointer, _pointer)(("ink_open", _lib))
+_strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
+_arrow = ctypes.CFUNCTYPE(_int, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_arrow", _lib))
+_off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
+_depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 
 
-_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1))  # of ink_closed's results, in order
-_OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
+class Strokes(NamedTuple):
+    """All strokes of a page, measured (see core/strokes.c).
+
+    Attributes:
+        points: without repeats and hooks, (n, 2) [pixels].  ends: where each stroke's points end.
+        measure: (strokes, 8): length, box (4), distance of its ends, root mean square distance from the centroid,
+            and across the longer axis [pixels].
+        samples: (strokes, SAMPLES, 2), in equal steps of length.
+        residual: (strokes, BENDS + 1): mean squared distance from its best k segments [pixels²].
+        vertices: (strokes, BENDS + 1, BENDS + 1, 2): of those segments.
+    """
+
+    points: Array
+    ends: NDArray[np.int32]
+    measure: Array
+    samples: Array
+    residual: Array
+    vertices: Array
 
 
 class ClosedFit(NamedTuple):
-    """Readings of a closed chain of ink in its normal frame (see core/outline.c).
+    """Readings of a closed chain of ink, in its normal frame where not said otherwise (see core/outline.c).
 
     Attributes:
         mean: the frame's origin [pixels].  back: (2, 2), pixel = mean + back @ normal.
-        ink, gap: lengths of the ink and of the gaps, in the frame.
+        ink, gap: lengths of the ink and of the gaps.
         conic: a, b, c, d, e of x² + y² = a(x² - y²) + 2bxy + cx + dy + e.
         ellipse_cost: nats to say the ink, given it.
         circle: centre and radius [pixels].  circle_cost: nats to say the ink, given it.
-        residual: of the best k-gon, for k = 0 .. SIDES.
+        residual: mean squared distance of the best k-gon, for k = 0 .. SIDES.
         cost: nats to say the ink, given that polygon.
-        corners: in the frame, (SIDES + 1, SIDES, 2).
+        corners: (SIDES + 1, SIDES, 2).
     """
 
     mean: Array
@@ -59,16 +78,34 @@ class ClosedFit(NamedTuple):
         return np.asarray(self.mean + self.corners[sides, :sides] @ self.back.T)
 
 
-class OpenFit(NamedTuple):
-    """Readings of one stroke as a polyline: see core/polyline.c."""
+class ArrowFit(NamedTuple):
+    """An arrow on some strokes: points [pixels] and angles [rad] (see core/arrow.c)."""
 
-    length: float
-    samples: Array
-    residual: list[float]
-    corners: Array
+    head: Array
+    lengths: list[float]
+    angles: list[float]
+    off: list[float]
 
-    def vertices(self, segments: int) -> Array:
-        return self.corners[segments, : segments + 1]
+
+_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1))  # of ink_closed's results, in order
+_OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
+
+
+def measure(strokes: list[Array]) -> Strokes:
+    """Clean, sample and measure strokes, each (n, 2) in pixels."""
+    count = len(strokes)
+    xy = np.ascontiguousarray(np.concatenate(strokes), dtype=np.float64)
+    ends = np.cumsum([len(s) for s in strokes], dtype=np.int32)
+    out = Strokes(
+        np.empty_like(xy),
+        np.empty_like(ends),
+        np.empty((count, 8)),
+        np.empty((count, SAMPLES, 2)),
+        np.empty((count, BENDS + 1)),
+        np.empty((count, BENDS + 1, BENDS + 1, 2)),
+    )
+    _strokes(xy.ctypes.data, ends.ctypes.data, count, *(part.ctypes.data for part in out))
+    return out
 
 
 def fit_closed(parts: list[Array], least_axis: float, cap: float, observations: float) -> ClosedFit:
@@ -77,27 +114,53 @@ def fit_closed(parts: list[Array], least_axis: float, cap: float, observations: 
     ends = np.cumsum([len(p) for p in parts], dtype=np.int32)
     out = np.empty(_OFFSETS[-1] + 2 * len(xy))
     at = out.ctypes.data
-    _closed(xy.ctypes.data, ends.ctypes.data, len(ends), least_axis, cap, observations, *(at + 8 * o for o in _OFFSETS))
-    frame, length, conic, residual, cost, corners, rest = _OFFSETS
+    _closed(
+        xy.ctypes.data,
+        ends.ctypes.data,
+        len(parts),
+        least_axis,
+        cap,
+        observations,
+        *[at + 8 * o for o in _OFFSETS],
+    )
+    _, length, conic, residual, cost, corners, rest = _OFFSETS
+    scalars = out[:corners].tolist()
     return ClosedFit(
         mean=out[0:2],
         back=out[6:10].reshape(2, 2),
-        ink=float(out[length]),
-        gap=float(out[length + 1]),
+        ink=scalars[length],
+        gap=scalars[length + 1],
         conic=out[conic : conic + 5],
-        ellipse_cost=float(out[conic + 5]),
-        circle=(float(out[conic + 6]), float(out[conic + 7]), float(out[conic + 8])),
-        circle_cost=float(out[conic + 9]),
-        residual=out[residual:cost].tolist(),
-        cost=out[cost:corners].tolist(),
+        ellipse_cost=scalars[conic + 5],
+        circle=(scalars[conic + 6], scalars[conic + 7], scalars[conic + 8]),
+        circle_cost=scalars[conic + 9],
+        residual=scalars[residual:cost],
+        cost=scalars[cost:],
         corners=out[corners:rest].reshape(SIDES + 1, SIDES, 2),
     )
 
 
-def fit_open(points: Array) -> OpenFit:
-    """Fit one stroke, (n, 2) in pixels, as polylines of 1 .. SIDES segments."""
-    xy = np.ascontiguousarray(points, dtype=np.float64)
-    samples, residual = np.empty((SAMPLES, 2)), np.empty(SIDES + 1)
-    corners = np.zeros((SIDES + 1, SIDES + 1, 2))
-    length = _open(xy.ctypes.data, len(xy), samples.ctypes.data, residual.ctypes.data, corners.ctypes.data)
-    return OpenFit(length, samples, residual.tolist(), corners)
+def fit_arrow(
+    strokes: Strokes, names: tuple[int, ...], tail: tuple[float, float], toward: tuple[float, float]
+) -> ArrowFit | None:
+    """Fit an arrow to strokes, given its tail and a point on its shaft [pixels]; None where they have no head."""
+    chosen = np.array(names, dtype=np.int32)
+    inputs = np.array((*tail, *toward))
+    out = np.empty(11 + len(names))
+    at, given = out.ctypes.data, inputs.ctypes.data
+    if not _arrow(
+        strokes.samples.ctypes.data, chosen.ctypes.data, len(names), given, given + 16, at, at + 48, at + 72, at + 88
+    ):
+        return None
+    values = out.tolist()
+    return ArrowFit(out[:6].reshape(3, 2), values[6:9], values[9:11], values[11:])
+
+
+def off_outline(strokes: Strokes, index: int, outline: Array) -> float:
+    """Mean squared distance of a stroke from a closed outline, (n, 2) [pixels]."""
+    return float(_off_outline(strokes.samples.ctypes.data, index, outline.ctypes.data, len(outline)))
+
+
+def depth(x: float, y: float, outline: Array) -> float:
+    """Distance of a point from a closed outline, (n, 2) [pixels]; negative inside."""
+    return float(_depth(x, y, outline.ctypes.data, len(outline)))

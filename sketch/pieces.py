@@ -4,123 +4,114 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sketch.ink import Sketch
-from sketch.kernel import OpenFit, fit_open
+from sketch.kernel import Strokes, measure
 
-__all__ = ["Piece", "cut_into_pieces"]
+__all__ = ["Page", "Piece", "page_of"]
 
-OBSERVATIONS = 30  # in the ink of a circle's length over its diameter
+OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Piece:
     """A stroke, or a part of one, with what every reading asks of it.
 
     Attributes:
-        stroke: index in the sketch.
+        index: among the page's pieces.
+        stroke: in the sketch.
         points: [pixels], shape (n, 2), without repeated points and hooks.
-        fit: its polylines.
+        ends: first and last point.
+        box: least x, least y, greatest x, greatest y [pixels].
+        length: along the stroke [pixels].
+        gap: distance between its ends [pixels].
+        extent: three times the root mean square distance from its centroid [pixels]: a size that no turn changes.
+        scale: what its writer's precision goes with [pixels]: half of its extent; of a piece that closes, half of
+            its thickness.
+        observations: how many independent observations its ink is worth: neighbouring points err together, over
+            a distance that goes with the size of what is drawn.
+        residual: mean squared distance from its best polyline of k segments [pixels²], k from 1.
+        vertices: of those polylines: vertices[k][:k + 1].
     """
 
+    index: int
     stroke: int
     points: Array
-    fit: OpenFit
+    ends: tuple[Point, Point]
+    box: tuple[float, float, float, float]
+    length: float
+    gap: float
+    extent: float
+    scale: float
+    observations: float
+    residual: list[float]
+    vertices: list[list[list[float]]]
 
     @property
-    def length(self) -> float:
-        return self.fit.length
-
-    @cached_property
-    def extent(self) -> float:
-        """Diagonal of the bounding box [pixels]."""
-        size = np.ptp(self.points, axis=0)
-        return float(np.hypot(size[0], size[1]))
-
-    @cached_property
-    def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        (a, b), (c, d) = self.points[0].tolist(), self.points[-1].tolist()
-        return (a, b), (c, d)
-
-    @cached_property
-    def gap(self) -> float:
-        """Distance between its ends [pixels]."""
-        (a, b), (c, d) = self.ends
-        return float(np.hypot(c - a, d - b))
-
-    @cached_property
-    def box(self) -> tuple[float, float, float, float]:
-        lo, hi = self.points.min(axis=0), self.points.max(axis=0)
-        return float(lo[0]), float(lo[1]), float(hi[0]), float(hi[1])
-
-    @cached_property
     def straight(self) -> float:
-        """Root mean square distance from its chord's best line, as a share of its length."""
-        return float(np.sqrt(self.fit.residual[1])) / max(self.length, 1e-9)
+        """Root mean square distance from a straight line, as a share of its length."""
+        return math.sqrt(self.residual[1]) / self.length
 
-    @cached_property
-    def observations(self) -> float:
-        """How many independent observations its ink is worth: neighbouring points err together, over a distance that
-        goes with the size of what is drawn."""
-        return OBSERVATIONS * self.length / (math.pi * max(self.extent, 1e-9))
-
-    @cached_property
-    def scale(self) -> float:
-        """Half of its extent; of a piece that closes, half of its thickness [pixels]."""
-        if self.gap > 0.15 * self.length:
-            return self.extent / 2
-        around = self.fit.samples - self.fit.samples.mean(axis=0)
-        return math.sqrt(2 * max(float(np.linalg.eigvalsh(around.T @ around)[0]) / len(around), 0.0))
+    def line(self, k: int) -> Array:
+        """Its best polyline of k segments [pixels], (k + 1, 2)."""
+        return np.array(self.vertices[k][: k + 1])
 
 
-def cut_into_pieces(sketch: Sketch) -> list[Piece]:
-    pieces = []
-    for i, stroke in enumerate(sketch.strokes):
-        if not stroke.has_length:
-            continue
-        points = _without_hooks(_without_repeats(stroke.points))
-        pieces.append(Piece(i, points, fit_open(points)))
-    return pieces
+@dataclass(frozen=True, eq=False, slots=True)
+class Page:
+    """All pieces of a sketch.
 
-
-def _without_repeats(points: Array) -> Array:
-    keep = np.ones(len(points), dtype=bool)
-    keep[1:] = (points[1:] != points[:-1]).any(axis=1)
-    return points[keep]
-
-
-def _without_hooks(points: Array) -> Array:
-    """The stroke without the little turn back that a pen leaves where it goes down or up.
-
-    A hook is a sharp turn (over 60°) in the first or last twentieth of the length.
+    Attributes:
+        pieces: those that have a length.
+        strokes: their measures as arrays, for the fits; a piece's row is its stroke.
+        size: diagonal of the ink's bounding box [pixels].
     """
-    if len(points) < 5:
-        return points
-    steps = np.diff(points, axis=0)
-    lengths = np.hypot(steps[:, 0], steps[:, 1])
-    along = np.concatenate([[0.0], np.cumsum(lengths)])
-    around = points - points.mean(axis=0)
-    thickness = 4 * math.sqrt(max(float(np.linalg.eigvalsh(around.T @ around)[0]) / len(points), 0.0))
-    reach = min(0.05 * along[-1], 0.2 * thickness)  # a thin box's short side is no hook
-    first = _hook_end(points, along, reach)
-    backwards = (along[-1] - along)[::-1]
-    last = len(points) - _hook_end(points[::-1], backwards, reach)
-    return points[first:last] if last - first >= 3 else points
+
+    pieces: list[Piece]
+    strokes: Strokes
+    size: float
 
 
-def _hook_end(points: Array, along: Array, reach: float) -> int:
-    """The index of the last sharp turn within `reach` of the start, 0 for none."""
-    stop = int(np.searchsorted(along, reach, side="right"))
-    best = 0
-    for i in range(1, min(stop, len(points) - 1)):
-        ahead = points[min(int(np.searchsorted(along, along[i] + reach)), len(points) - 1)] - points[i]
-        back = points[i] - points[0]
-        if float(ahead @ back) < 0.5 * float(np.hypot(*ahead) * np.hypot(*back)):
-            best = i
-    return best
+def page_of(sketch: Sketch) -> Page:
+    strokes = measure([s.points for s in sketch.strokes])
+    ends = strokes.ends.tolist()
+    residuals, vertices = strokes.residual.tolist(), strokes.vertices.tolist()
+    pieces: list[Piece] = []
+    for s, m in enumerate(strokes.measure.tolist()):
+        if m[0] == 0:
+            continue
+        points = strokes.points[ends[s - 1] if s else 0 : ends[s]]
+        pieces.append(_piece(len(pieces), s, points, m, residuals[s], vertices[s]))
+    if not pieces:
+        return Page([], strokes, 0.0)
+    boxes = np.array([p.box for p in pieces])
+    width, height = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
+    return Page(pieces, strokes, math.hypot(width, height))
+
+
+def _piece(
+    index: int, s: int, points: Array, m: list[float], residual: list[float], vertices: list[list[list[float]]]
+) -> Piece:
+    length, x0, y0, x1, y1, gap, spread, across = m
+    extent = 3 * spread
+    first, last = points[[0, -1]].tolist()
+    return Piece(
+        index=index,
+        stroke=s,
+        points=points,
+        ends=((first[0], first[1]), (last[0], last[1])),
+        box=(x0, y0, x1, y1),
+        length=length,
+        gap=gap,
+        extent=extent,
+        scale=math.sqrt(2) * across if gap < 0.15 * length else extent / 2,
+        observations=OBSERVATIONS * length / (math.pi * extent),
+        residual=residual,
+        vertices=vertices,
+    )

@@ -1,8 +1,10 @@
 """Ink → scene: readings of groups of strokes, scored, and the set of them that explains all the ink best.
 
 What is optimized: the length of a description of the page.  Every reading of a group of ink says what the ink is in
-fewer nats than saying the ink itself, point by point; that saving is its gain.  The answer is the set of readings, each
-piece of ink in at most one, with the greatest total gain: no other set describes the page in fewer nats.
+fewer nats than saying the ink itself, point by point; that saving is its gain (`sketch.scoring`).  The answer is the
+set of readings, each piece of ink in at most one, with the greatest total gain, found exactly (`sketch.search`): no
+other set of the readings at hand describes the page in fewer nats.  It is found twice: first from the ink alone, then
+with what the bodies of the first answer say about the marks on and around them (`sketch.context`).
 """
 
 from __future__ import annotations
@@ -10,23 +12,21 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from sim.scene import Scene
-from sketch import group, primitives
+from sketch.context import with_context
+from sketch.grouping import arrow_groups, closing_chains, crosses
 from sketch.ink import Sketch
-from sketch.interpret import distance, inside, interpret
-from sketch.pieces import Piece, cut_into_pieces
-from sketch.primitives import Fitted
+from sketch.interpret import interpret
+from sketch.marks import read_arrow, read_bar, read_cross
+from sketch.outlines import gone_over, read_outline
+from sketch.pieces import Page, page_of
 from sketch.reading import Reading
+from sketch.scoring import Fitted, unread
 from sketch.search import best_packing
 
 __all__ = ["Reading", "Recognition", "recognize"]
 
-ANCHORS = 15.0  # nats that an X is likelier over a body than elsewhere
-SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
 SAME_PLACE = 60.0  # nats that an outline around another's place is the same body gone over, not a second one
-DOT = 0.012  # of the page: nobody draws a smaller body
 KINDS = {"ellipse": "polygon", "cross": "anchor", "arrow": "gravity"}
 
 
@@ -49,62 +49,71 @@ def recognize(
         scale: [pixels per metre], overriding the sketch's own.
         gravity: [m/s²], y up, overriding the arrow's.
     """
-    pieces = cut_into_pieces(sketch)
-    candidates = _candidates(pieces)
-    free = [primitives.unread(p) for p in pieces]
+    page = page_of(sketch)
+    candidates = read_groups(page)
+    free = [unread(p) for p in page.pieces]
     gains = [sum(free[i] for i in c.pieces) - c.cost for c in candidates]
-    gains = _with_context(candidates, gains, _best(candidates, gains), pieces)
-    chosen = _best(candidates, gains)
-    readings = [_reading(k, candidates, gains, pieces) for k in chosen]
-    readings.sort(key=lambda r: r.strokes)
+    likely = _best(candidates, gains)
+    gains = with_context(candidates, gains, likely, page.size)
+    readings = _readings(page, candidates, gains, _best(candidates, gains))
     read = {s for r in readings for s in r.strokes}
-    for i, stroke in enumerate(sketch.strokes):
-        if i not in read:
-            readings.append(Reading("unread", (i,), 0.0, stroke.points))
-    scene, readings = interpret(sketch, readings, scale, gravity)
+    left = [Reading("unread", (i,), 0.0, s.points) for i, s in enumerate(sketch.strokes) if i not in read]
+    scene, readings = interpret(sketch, readings + left, scale, gravity)
     return Recognition(sketch, scene, readings)
 
 
-def _candidates(pieces: list[Piece]) -> list[Fitted]:
-    least_axis = 3.0
+# ---------------------------------------------------------------- candidates
+
+
+def read_groups(page: Page) -> list[Fitted]:
+    """Every reading of every group of pieces that lie together."""
     out: list[Fitted] = []
-    complete = set()
-    for i, piece in enumerate(pieces):
-        if piece.gap < 0.2 * piece.length:
-            fits = primitives.closed(pieces, [(i, False)], least_axis)
-            loop = piece.scale > 0.2 * piece.extent
-            if loop or min(f.cost for f in fits) < 0.6 * primitives.unread(piece):
-                complete.add(i)
-    for chain in group.closing_chains(pieces, complete):
-        found = primitives.closed(pieces, chain, least_axis)
+    complete, single = set(), {}
+    for p in page.pieces:
+        if p.gap < 0.2 * p.length:
+            single[p.index] = read_outline(page, [(p.index, False)])
+            loop = p.scale > 0.2 * p.extent
+            if loop or min(f.cost for f in single[p.index]) < 0.6 * unread(p):
+                complete.add(p.index)
+    outlines = []
+    for chain in closing_chains(page, complete):
+        alone = single.get(chain[0][0]) if len(chain) == 1 else None
+        outlines.append(alone or read_outline(page, chain))
+    for found in outlines:
         out += found
-        out += _gone_over(found, pieces)
-    for i, piece in enumerate(pieces):
-        line = primitives.bar(i, piece)
-        if line:
-            out.append(line)
-    for names in group.crossing_pairs(pieces):
-        found = primitives.cross(pieces, names)
-        if found:
-            out.append(found)
-    for names, tail, tip in group.arrow_groups(pieces):
-        found = primitives.arrow(pieces, names, np.asarray(tail), np.asarray(tip))
-        if found:
-            out.append(found)
+        out += _gone_over(page, found)
+    for p in page.pieces:
+        out += _kept(read_bar(p))
+    for names in crosses(page):
+        out += _kept(read_cross(page, names))
+    arrows: dict[tuple[int, ...], Fitted] = {}
+    for names, tail, toward in arrow_groups(page):
+        arrow = read_arrow(page, names, tail, toward)
+        if arrow and (arrow.pieces not in arrows or arrow.cost < arrows[arrow.pieces].cost):
+            arrows[arrow.pieces] = arrow
+    out += arrows.values()
     return out
 
 
-def _gone_over(found: list[Fitted], pieces: list[Piece]) -> list[Fitted]:
-    """The readings of a chain with the other pieces that run along its outline as drawn once more."""
+def _kept(found: Fitted | None) -> list[Fitted]:
+    return [] if found is None else [found]
+
+
+def _gone_over(page: Page, found: list[Fitted]) -> list[Fitted]:
+    """The readings of an outline together with the other pieces that run along it, as drawn once more."""
     best = min(found, key=lambda f: f.cost)
-    costs = {j: primitives.absorb(best, pieces, j) for j in range(len(pieces)) if j not in best.pieces}
-    for j in costs:
-        if pieces[j].gap < 0.2 * pieces[j].length:
-            costs[j] -= SAME_PLACE
-    again = [j for j, cost in costs.items() if cost < primitives.unread(pieces[j])]
-    if not again:
-        return []
-    sets = [again] if len(again) == 1 else [again, *([j] for j in again)]
+    reach = 0.3 * best.scale
+    (x0, y0), (x1, y1) = (best.outline.min(axis=0) - reach).tolist(), (best.outline.max(axis=0) + reach).tolist()
+    costs: dict[int, float] = {}
+    for p in page.pieces:
+        if p.box[0] < x0 or p.box[1] < y0 or p.box[2] > x1 or p.box[3] > y1 or p.index in best.pieces:
+            continue
+        cost = gone_over(page, best, p.index) - (SAME_PLACE if p.gap < 0.2 * p.length else 0.0)
+        if cost < unread(p):
+            costs[p.index] = cost
+    sets = [tuple(costs)] if costs else []
+    if len(costs) > 1:
+        sets += [(j,) for j in costs]
     return [
         replace(f, pieces=tuple(sorted((*f.pieces, *more))), cost=f.cost + sum(costs[j] for j in more))
         for f in found
@@ -112,67 +121,32 @@ def _gone_over(found: list[Fitted], pieces: list[Piece]) -> list[Fitted]:
     ]
 
 
+# ---------------------------------------------------------------- the best explanation
+
+
 def _best(candidates: list[Fitted], gains: list[float]) -> list[int]:
+    """Indices of the disjoint candidates with the greatest total gain."""
     live = [k for k, gain in enumerate(gains) if gain > 0]
     chosen = best_packing([frozenset(candidates[k].pieces) for k in live], [gains[k] for k in live])
     return [live[k] for k in chosen]
 
 
-def _with_context(
-    candidates: list[Fitted], gains: list[float], chosen: list[int], pieces: list[Piece]
-) -> list[float]:
-    """The gains, given the bodies that the ink alone makes likely: context is told last and decides what is close."""
-    gains = list(gains)
-    solid = ("circle", "ellipse", "rectangle", "polygon")
-    bodies = [candidates[k] for k in chosen if candidates[k].kind in solid]
-    lo = np.min([p.box[:2] for p in pieces], axis=0)
-    hi = np.max([p.box[2:] for p in pieces], axis=0)
-    dot = DOT * float(np.hypot(*(hi - lo)))
-    sizes = [(c, float(np.hypot(*np.ptp(c.outline, axis=0)))) for c in bodies]
+def _readings(page: Page, candidates: list[Fitted], gains: list[float], chosen: list[int]) -> list[Reading]:
+    """The chosen candidates, each with the other readings of the same ink as probabilities, in order of drawing."""
+    same: dict[tuple[int, ...], list[int]] = {}
     for k, c in enumerate(candidates):
-        if gains[k] < -2 * ANCHORS:
-            continue
-        centre = c.outline.mean(axis=0)
-        others = [(b, size) for b, size in sizes if set(b.pieces).isdisjoint(c.pieces)]
-        size = float(np.hypot(*np.ptp(c.outline, axis=0)))
-        if size < dot:  # where the pen rested
-            gains[k] -= 0.5 * (math.log(dot / max(size, 1e-9)) / 0.1) ** 2
-        if c.kind == "cross":
-            gains[k] += ANCHORS if any(inside(centre, b.outline) for b, _ in others) else -2 * ANCHORS
-        elif c.kind == "arrow":
-            gains[k] -= ANCHORS * any(inside(centre, b.outline) for b, _ in others)
-        elif c.kind == "bar":
-            # a short mark that touches an outline is its writer's slip, not a rod
-            if any(
-                size < 0.5 * large and min(distance(c.outline[e], b.outline) for e in (0, -1)) < 0.1 * large
-                for b, large in others
-            ):
-                gains[k] -= SLIP
-        elif c.kind == "circle":
-            under = [
-                b
-                for b, large in others
-                if large > 3 * size and (distance(centre, b.outline) < size / 2 or inside(centre, b.outline))
-            ]
-            if len({b.pieces for b in under}) > 1:
-                gains[k] += ANCHORS
-    return gains
-
-
-def _reading(k: int, candidates: list[Fitted], gains: list[float], pieces: list[Piece]) -> Reading:
-    """The chosen candidate with the others of the same ink, as probabilities."""
-    same = {k: gains[k]}
-    for j, c in enumerate(candidates):
-        if c.pieces == candidates[k].pieces:
-            same[j] = gains[j]
-    top = max(same.values())
-    weight: dict[str, float] = {}
-    for j, gain in same.items():
-        kind = KINDS.get(candidates[j].kind, candidates[j].kind)
-        weight[kind] = weight.get(kind, 0.0) + math.exp(max(gain - top, -50.0))
-    total = sum(weight.values())
-    c = candidates[k]
-    kind = KINDS.get(c.kind, c.kind)
-    others = sorted(((n, w / total) for n, w in weight.items() if n != kind), key=lambda t: -t[1])
-    strokes = tuple(sorted({pieces[i].stroke for i in c.pieces}))
-    return Reading(kind, strokes, weight[kind] / total, c.outline, others)
+        same.setdefault(c.pieces, []).append(k)
+    readings = []
+    for k in chosen:
+        c = candidates[k]
+        weight: dict[str, float] = {}
+        for j in same[c.pieces]:
+            kind = KINDS.get(candidates[j].kind, candidates[j].kind)
+            weight[kind] = weight.get(kind, 0.0) + math.exp(min(max(gains[j] - gains[k], -50.0), 50.0))
+        weight["unread"] = math.exp(-min(gains[k], 50.0))
+        total = sum(weight.values())
+        kind = KINDS.get(c.kind, c.kind)
+        others = sorted(((n, w / total) for n, w in weight.items() if n != kind), key=lambda t: -t[1])
+        strokes = tuple(sorted({page.pieces[i].stroke for i in c.pieces}))
+        readings.append(Reading(kind, strokes, weight[kind] / total, c.outline, others))
+    return sorted(readings, key=lambda r: r.strokes)

@@ -11,7 +11,7 @@
 #endif
 
 enum {
-    SAMPLES = 64, /* of a piece of ink: a rectangle's side still has a dozen, and a fit takes tens of microseconds */
+    SAMPLES = 64, /* of a piece of ink: a rectangle's side still has a dozen */
     SIDES = 14    /* the most sides that are told apart; beyond, an outline is round or free */
 };
 
@@ -23,25 +23,26 @@ typedef struct {
     double sxx[2 * SAMPLES + 1], sxy[2 * SAMPLES + 1], syy[2 * SAMPLES + 1];
     double six[2 * SAMPLES + 1], siy[2 * SAMPLES + 1];   /* x and y times the index, */
     double siix[2 * SAMPLES + 1], siiy[2 * SAMPLES + 1]; /* and times its square: for the bow */
-    double stiffness; /* (tremor / usual bow)²: what a bow costs, see runs_side */
-    double cost[SAMPLES][SAMPLES + 1]; /* cost[i][m]: of samples i .. i+m-1 as one side, see Line */
+    double cost[2][SAMPLES][SAMPLES + 1]; /* cost[w][i][m]: of samples i .. i+m-1 as one side, see Line */
 } Runs;
 
 typedef struct {
     double x, y, dx, dy; /* a point of the line, and its unit direction in the order of the samples */
-    double length;       /* of the run along the line */
     double bow;          /* how far the run's middle stands off its ends, to the left of the direction */
     double cost;         /* squared distances from the bowed line, and the price of the bow */
     double spread2;      /* squared distances from the straight line */
+    double length2;      /* squared length of the run along the line */
+    double bowed, stretch; /* the bow's part of the squares, before its price: see runs_line */
 } Line;
 
-void runs_prepare(Runs *r);
+/* Fill the sums, and the costs for each of `ways` stiffnesses, (tremor / usual bow)²: what a bow costs. */
+void runs_prepare(Runs *r, int ways, const double *stiffness);
 
 /* The line of samples first .. first+count-1. Nobody draws a straight side straight: it may bow, at a price. */
-Line runs_line(const Runs *r, int first, int count);
+Line runs_line(const Runs *r, int first, int count, double stiffness);
 
 /* Best splits of samples start .. start+n-1 into 1 .. SIDES runs: cut[k] holds the k+1 bounds of the best k. */
-void runs_split(const Runs *r, int start, int kmax, double total[SIDES + 1], int cut[SIDES + 1][SIDES + 1]);
+void runs_split(const Runs *r, int way, int start, int kmax, double total[SIDES + 1], int cut[SIDES + 1][SIDES + 1]);
 
 /* Where two neighbouring sides meet, given the last sample of one and the first of the next. */
 void corner(const Line *a, const Line *b, const double end[2], const double begin[2], double out[2]);

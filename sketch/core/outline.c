@@ -110,7 +110,8 @@ static double fit_round(const double *x, const double *y, const double *factor, 
 
 /* Corners of the k-gon whose sides are the runs bounded by `cut` (counted from `start`), and its mean squared distance.
  * Ink that overshoots a corner lies on its side's line: it pays for the length beyond at a quarter. */
-static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double cap2, double *vertices,
+static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double stiffness, double cap2,
+                          double *vertices,
                           double *oddness, double *perimeter)
 {
     Line side[SIDES], chord[SIDES];
@@ -119,7 +120,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         turning += r->x[i] * r->y[i + 1] - r->y[i] * r->x[i + 1];
     double outward = turning > 0 ? 1 : -1; /* to the right of the samples' order, in a frame with y up */
     for (int q = 0; q < k; q++) {
-        chord[q] = side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q]);
+        chord[q] = side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q], stiffness);
         double off = 2.0 / 3 * side[q].bow; /* the drawn corners are the ends of the bows */
         chord[q].x -= off * side[q].dy;
         chord[q].y += off * side[q].dx;
@@ -288,16 +289,15 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         cost[k] = residual[k] = INFINITY;
     double total[SIDES + 1], polygon[2 * SIDES], odd, around;
     int cut[SIDES + 1][SIDES + 1];
-    for (int stiff = 0; stiff < 2; stiff++) {
-        r.stiffness = STIFFNESS[stiff];
-        runs_prepare(&r);
+    runs_prepare(&r, 2, STIFFNESS);
+    for (int way = 0; way < 2; way++) {
         /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin
          * again from corners found that way. */
         int start = 0;
         for (int round = 0; round < 3; round++) {
-            runs_split(&r, start, SIDES, total, cut);
+            runs_split(&r, way, start, SIDES, total, cut);
             for (int k = 3; k <= SIDES; k++) {
-                double s = fit_polygon(&r, factor, start, cut[k], k, cap2, polygon, &odd, &around);
+                double s = fit_polygon(&r, factor, start, cut[k], k, STIFFNESS[way], cap2, polygon, &odd, &around);
                 double c = misfit(s, observations) + odd + retraced(length[0], around, observations);
                 if (c < cost[k]) {
                     cost[k] = c;

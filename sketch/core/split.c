@@ -41,7 +41,7 @@ double sample_parts(const double *xy, const int32_t *part_end, int parts, double
     return total;
 }
 
-void runs_prepare(Runs *r)
+void runs_prepare(Runs *r, int ways, const double *stiffness)
 {
     int n = r->n;
     memcpy(r->x + n, r->x, n * sizeof *r->x);
@@ -61,16 +61,21 @@ void runs_prepare(Runs *r)
         r->siiy[i + 1] = r->siiy[i] + (double)i * i * y;
     }
     for (int i = 0; i < n; i++) {
-        r->cost[i][0] = r->cost[i][1] = 0;
-        for (int m = 2; m <= n; m++)
-            r->cost[i][m] = runs_line(r, i, m).cost;
+        for (int w = 0; w < ways; w++)
+            r->cost[w][i][0] = r->cost[w][i][1] = 0;
+        for (int m = 2; m <= n; m++) {
+            Line line = runs_line(r, i, m, stiffness[0]);
+            r->cost[0][i][m] = line.cost;
+            for (int w = 1; w < ways; w++)
+                r->cost[w][i][m] = fmax(line.spread2 - line.bowed / (line.stretch + stiffness[w] / line.length2), 0);
+        }
     }
 }
 
 /* Orthogonal regression, then the bow b along q(t) = t² - mean(t²), t from -1 to 1 over the run, which is orthogonal to
  * the line. A bow of a few hundredths of the side is usual; as a normal prior of that spread it is a ridge term in the
  * squares: stiffness (b / length)². */
-Line runs_line(const Runs *r, int first, int count)
+Line runs_line(const Runs *r, int first, int count, double stiffness)
 {
     int e = first + count;
     double w = 1.0 / count;
@@ -96,7 +101,8 @@ Line runs_line(const Runs *r, int first, int count)
         dy = -dy;
     }
     least = least > 0 ? least : 0;
-    Line line = {mx, my, dx, dy, sqrt(12 * most * w), 0, least, least};
+    double length2 = fmax(12 * most * w, 1e-12);
+    Line line = {mx, my, dx, dy, 0, least, least, length2, 0, 1};
     if (count < 4)
         return line;
     double c = 0.5 * (first + z), k = 0.5 * (z - first); /* t = (i - c) / k */
@@ -106,21 +112,22 @@ Line runs_line(const Runs *r, int first, int count)
     double hq = dx * qy - dy * qx;
     double g = count - 1, fourth = count * (count + 1.0) * (3.0 * count * count - 7) / (15 * g * g * g); /* sum of t⁴ */
     double qq = fourth - count * mean2 * mean2;
-    double stiff = r->stiffness / fmax(line.length * line.length, 1e-12);
-    line.bow = hq / (qq + stiff);
+    line.bowed = hq * hq;
+    line.stretch = qq;
+    line.bow = hq / (qq + stiffness / length2);
     line.cost -= hq * line.bow;
     if (line.cost < 0)
         line.cost = 0;
     return line;
 }
 
-void runs_split(const Runs *r, int start, int kmax, double total[SIDES + 1], int cut[SIDES + 1][SIDES + 1])
+void runs_split(const Runs *r, int way, int start, int kmax, double total[SIDES + 1], int cut[SIDES + 1][SIDES + 1])
 {
     int n = r->n;
     double best[SIDES + 1][SAMPLES + 1];
     int16_t from[SIDES + 1][SAMPLES + 1];
     for (int j = 0; j <= n; j++) {
-        best[1][j] = r->cost[start % n][j];
+        best[1][j] = r->cost[way][start % n][j];
         from[1][j] = 0;
     }
     for (int k = 2; k <= kmax; k++)
@@ -128,7 +135,7 @@ void runs_split(const Runs *r, int start, int kmax, double total[SIDES + 1], int
             double least = INFINITY;
             int at = 0;
             for (int i = 2 * (k - 1); i <= j - 2; i++) { /* a run has two samples or more */
-                double c = best[k - 1][i] + r->cost[(start + i) % n][j - i];
+                double c = best[k - 1][i] + r->cost[way][(start + i) % n][j - i];
                 if (c < least) {
                     least = c;
                     at = i;

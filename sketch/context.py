@@ -1,0 +1,93 @@
+"""What stands around a reading: told last, in nats, so that it decides between readings that are nearly equal."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.kernel import depth
+from sketch.scoring import Fitted
+
+__all__ = ["with_context"]
+
+Array = NDArray[np.float64]
+
+ANCHORS = 15.0  # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
+NO_BODY = 30.0  # nats that an X away from every body is unlikely: it would mean nothing
+SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
+DOT = 0.012  # of the page: nobody draws a smaller body
+DOT_SPREAD = 0.1  # of the logarithm of a size, below that
+
+
+def with_context(candidates: list[Fitted], gains: list[float], chosen: list[int], size: float) -> list[float]:
+    """The gains, given the bodies (`chosen` candidates) that the ink by itself makes likely.
+
+    size: of the page [pixels].
+    """
+    gains = list(gains)
+    bodies = _Bodies([candidates[k] for k in chosen if candidates[k].closed])
+    for k, c in enumerate(candidates):
+        if gains[k] < -NO_BODY:
+            continue
+        extent = _extent(c.outline)
+        if c.closed and extent < DOT * size:  # where the pen rested
+            gains[k] -= 0.5 * (math.log(DOT * size / max(extent, 1e-9)) / DOT_SPREAD) ** 2
+        if c.kind == "cross":
+            gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY
+        elif c.kind == "arrow":
+            gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
+        elif c.kind == "bar":
+            gains[k] -= SLIP * bodies.slip(c, extent)
+        elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
+            gains[k] += ANCHORS
+    return gains
+
+
+def _extent(outline: Array) -> float:
+    width, height = (outline.max(axis=0) - outline.min(axis=0)).tolist()
+    return math.hypot(width, height)
+
+
+class _Bodies:
+    """The likely bodies, to be asked which of them are at a place."""
+
+    def __init__(self, bodies: list[Fitted]) -> None:
+        self.bodies = bodies
+        self.low = np.array([b.outline.min(axis=0) for b in bodies]).reshape(-1, 2)
+        self.high = np.array([b.outline.max(axis=0) for b in bodies]).reshape(-1, 2)
+        self.extent = np.hypot(*(self.high - self.low).T)
+
+    def near(self, x: float, y: float, reach: float | Array) -> list[int]:
+        if not self.bodies:
+            return []
+        r = np.asarray(reach)
+        close = (
+            (self.low[:, 0] - r <= x)
+            & (self.low[:, 1] - r <= y)
+            & (self.high[:, 0] + r >= x)
+            & (self.high[:, 1] + r >= y)
+        )
+        return [int(b) for b in np.flatnonzero(close)]
+
+    def around(self, c: Fitted, reach: float, least: float = 0.0) -> int:
+        """How many bodies of other ink, at least so large, have c's centre within them or within `reach`."""
+        x, y = c.outline.mean(axis=0).tolist()
+        mine = set(c.pieces)
+        return sum(
+            self.extent[b] > least
+            and mine.isdisjoint(self.bodies[b].pieces)
+            and depth(x, y, self.bodies[b].outline) < reach
+            for b in self.near(x, y, reach)
+        )
+
+    def slip(self, c: Fitted, extent: float) -> bool:
+        """Whether an end of c touches the outline of a body of other ink that is twice as large."""
+        mine = set(c.pieces)
+        for x, y in (c.outline[0].tolist(), c.outline[-1].tolist()):
+            for b in self.near(x, y, 0.1 * self.extent):
+                if extent < 0.5 * self.extent[b] and mine.isdisjoint(self.bodies[b].pieces):
+                    if abs(depth(x, y, self.bodies[b].outline)) < 0.1 * self.extent[b]:
+                        return True
+        return False

@@ -1,0 +1,100 @@
+/* An arrow's reading: a shaft from its tail to the tip, and two barbs from the tip, fitted to all the ink of some strokes. */
+#include "fit.h"
+
+#include <math.h>
+
+/* samples: of every stroke of the page, (strokes, SAMPLES, 2) [pixels]; names: the strokes meant, `count` of them.
+ * tail, toward: the shaft's tail and a point on the way to the tip.
+ * Out: head (2) and barbs' ends (4) [pixels]; lengths (3): of the shaft and the barbs; angles (2): between barb and shaft;
+ * off[k]: mean squared distance of the k-th stroke from the arrow [pixels²].
+ * Returns 0 where the ink has no head: a barb on each side, pointing back. */
+INK_API int32_t ink_arrow(const double *samples, const int32_t *names, int32_t count, const double *tail,
+                          const double *toward, double *head, double *lengths, double *angles, double *off)
+{
+    double ux = toward[0] - tail[0], uy = toward[1] - tail[1], l = hypot(ux, uy);
+    if (l <= 0)
+        return 0;
+    ux /= l;
+    uy /= l;
+    double reach = 0, left[2] = {0, 0}, right[2] = {0, 0}; /* along the shaft, and across */
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < SAMPLES; i++) {
+            const double *p = samples + 2 * (SAMPLES * names[k] + i);
+            double s = (p[0] - tail[0]) * ux + (p[1] - tail[1]) * uy, h = (p[1] - tail[1]) * ux - (p[0] - tail[0]) * uy;
+            if (s > reach)
+                reach = s;
+            if (h > left[1]) {
+                left[0] = s;
+                left[1] = h;
+            }
+            if (h < right[1]) {
+                right[0] = s;
+                right[1] = h;
+            }
+        }
+    double sum = 0, n = 0;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < SAMPLES; i++) {
+            const double *p = samples + 2 * (SAMPLES * names[k] + i);
+            double s = (p[0] - tail[0]) * ux + (p[1] - tail[1]) * uy, h = (p[1] - tail[1]) * ux - (p[0] - tail[0]) * uy;
+            if (s > 0.96 * reach) {
+                sum += h;
+                n++;
+            }
+        }
+    if (reach <= 0)
+        return 0;
+    double tip[2] = {reach, sum / n}, origin[2] = {0, 0};
+    lengths[0] = reach;
+    lengths[1] = hypot(tip[0] - left[0], tip[1] - left[1]);
+    lengths[2] = hypot(tip[0] - right[0], tip[1] - right[1]);
+    angles[0] = atan2(left[1] - tip[1], tip[0] - left[0]);
+    angles[1] = atan2(tip[1] - right[1], tip[0] - right[0]);
+    for (int e = 0; e < 2; e++)
+        if (angles[e] < 0.15 || angles[e] > 1.4 || lengths[e + 1] < 0.1 * reach)
+            return 0;
+    for (int k = 0; k < count; k++) {
+        off[k] = 0;
+        for (int i = 0; i < SAMPLES; i++) {
+            const double *p = samples + 2 * (SAMPLES * names[k] + i);
+            double s = (p[0] - tail[0]) * ux + (p[1] - tail[1]) * uy, h = (p[1] - tail[1]) * ux - (p[0] - tail[0]) * uy;
+            double d = segment_distance2(s, h, origin, tip);
+            d = fmin(d, segment_distance2(s, h, tip, left));
+            off[k] += fmin(d, segment_distance2(s, h, tip, right)) / SAMPLES;
+        }
+    }
+    const double *at[3] = {tip, left, right};
+    for (int e = 0; e < 3; e++) {
+        head[2 * e] = tail[0] + at[e][0] * ux - at[e][1] * uy;
+        head[2 * e + 1] = tail[1] + at[e][0] * uy + at[e][1] * ux;
+    }
+    return 1;
+}
+
+/* Mean squared distance of stroke `name` from a closed outline, (n, 2) [pixels]. */
+INK_API double ink_off_outline(const double *samples, int32_t name, const double *outline, int32_t n)
+{
+    double sum = 0;
+    for (int i = 0; i < SAMPLES; i++) {
+        const double *p = samples + 2 * (SAMPLES * name + i);
+        double best = INFINITY;
+        for (int q = 0; q < n; q++)
+            best = fmin(best, segment_distance2(p[0], p[1], outline + 2 * q, outline + 2 * ((q + 1) % n)));
+        sum += best;
+    }
+    return sum / SAMPLES;
+}
+
+/* Distance of a point from a closed outline [pixels], negative inside (even-odd rule). */
+INK_API double ink_depth(double x, double y, const double *outline, int32_t n)
+{
+    double best = INFINITY;
+    int within = 0;
+    for (int q = 0; q < n; q++) {
+        const double *a = outline + 2 * q, *b = outline + 2 * ((q + 1) % n);
+        best = fmin(best, segment_distance2(x, y, a, b));
+        if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]))
+            within = !within;
+    }
+    return within ? -sqrt(best) : sqrt(best);
+}

@@ -1,0 +1,127 @@
+"""Readings of closed outlines: circle, ellipse, rectangle, polygon; and ink that goes over one once more."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.kernel import ClosedFit, fit_closed, off_outline
+from sketch.pieces import Page
+from sketch.scoring import PARAMETER, Fitted, misfit
+
+__all__ = ["Chain", "gone_over", "read_outline"]
+
+Array = NDArray[np.float64]
+Chain = list[tuple[int, bool]]  # pieces that go once around, each with whether it was drawn the other way
+
+MOST_SIDES = 12
+ROUND = 36.0  # nats that a round outline is rarer than its three parameters say
+UNROUND = 0.085  # usual log of a drawn circle's length over its width: nobody's circles are round
+ELLIPSE = 11.0  # nats that an ellipse takes beyond a circle: two parameters, and that it is rarer
+RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.c
+GAP = 4.0  # nats for each observation that an outline lacks
+CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
+LEAST_AXIS = 0.002  # of the page: thinner outlines are judged as if they were this thick
+
+_ANGLES = np.linspace(0, 2 * math.pi, 24, endpoint=False)
+_RING = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
+
+
+def read_outline(page: Page, chain: Chain) -> list[Fitted]:
+    """The readings of pieces that go once around, one of each kind."""
+    pieces = page.pieces
+    names = tuple(sorted(i for i, _ in chain))
+    count = sum(pieces[i].observations for i in names)
+    parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in chain]
+    fit = fit_closed(parts, LEAST_AXIS * page.size, CAP, count)
+    gaps = GAP * count * fit.gap / fit.ink
+    b = fit.back
+    scale = math.sqrt(abs(float(b[0, 0] * b[1, 1] - b[0, 1] * b[1, 0])))
+    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + 2 * k * PARAMETER)
+    polygon = Fitted(
+        "polygon", names, fit.cost[sides] + 2 * sides * PARAMETER + gaps, fit.vertices(sides), scale
+    )
+    out = [*_round(fit, names, gaps, scale), polygon]
+    box = _rectangle(fit)
+    if box is not None:
+        corners, extra = box
+        off = fit.residual[4]
+        cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + 5 * PARAMETER + gaps
+        out.append(Fitted("rectangle", names, cost, corners, scale))
+    return out
+
+
+def gone_over(page: Page, fitted: Fitted, index: int) -> float:
+    """Nats to say a further piece of ink, given that it runs along a closed outline that is there already.
+
+    Sides are drawn twice, in pieces that overlap, or gone over once more.  Infinite where the piece lies elsewhere.
+    """
+    piece = page.pieces[index]
+    scale = min(fitted.scale, max(piece.scale, 1e-9))
+    off = off_outline(page.strokes, piece.stroke, fitted.outline)
+    return PARAMETER + RETRACE * piece.observations + misfit(off / scale**2, piece.observations)
+
+
+def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float, scale: float) -> list[Fitted]:
+    """The circle and the ellipse; one hardly longer than wide is a circle too."""
+    x, y, r = fit.circle
+    circle = Fitted("circle", names, fit.circle_cost + ROUND + gaps, np.array([x, y]) + r * _RING, scale)
+    a, b, c, d, e = fit.conic.tolist()
+    if a * a + b * b > 0.5:  # in this frame whatever is round is nearly a circle
+        return [circle]
+    m = np.array([[1 - a, -b], [-b, 1 + a]])
+    centre = np.linalg.solve(m, np.array([c, d]) / 2)
+    level = e + float(centre @ m @ centre)
+    if not 0.2 < level < 5:
+        return [circle]
+    to = np.linalg.inv(fit.back)
+    values, axes = np.linalg.eigh(to.T @ m @ to / level)  # (p - middle)ᵀ shape (p - middle) = 1, in pixels
+    radii = 1 / np.sqrt(values)
+    longer = 0.5 * math.log(values[1] / values[0])
+    middle = fit.mean + fit.back @ centre
+    cost = fit.ellipse_cost + ROUND + gaps
+    if cost + 0.5 * (longer / UNROUND) ** 2 < circle.cost:
+        ring = middle + math.sqrt(radii[0] * radii[1]) * _RING
+        circle = Fitted("circle", names, cost + 0.5 * (longer / UNROUND) ** 2, ring, scale)
+    return [circle, Fitted("ellipse", names, cost + ELLIPSE, middle + (_RING * radii) @ axes.T, scale)]
+
+
+def _rectangle(fit: ClosedFit) -> tuple[Array, float] | None:
+    """The rectangle nearest to the best quadrilateral, and the mean squared distance that it adds, in the frame.
+
+    Its direction is the sides' mean, modulo a right angle, weighted by their lengths; its sides go through the middles
+    of the quadrilateral's.
+    """
+    corners = [complex(x, y) for x, y in fit.vertices(4).tolist()]
+    sides = [b - a for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    lengths = [max(abs(s), 1e-9) for s in sides]
+    fourfold = sum(s**4 / n**3 for s, n in zip(sides, lengths, strict=True))
+    if fourfold == 0:
+        return None
+    turn = (fourfold / abs(fourfold)) ** 0.25
+    turned = [s / turn for s in sides]
+    along = [abs(s.real) > abs(s.imag) for s in turned]
+    if along[0] == along[1] or along[0] != along[2] or along[1] != along[3]:
+        return None
+    middles = [(c + s / 2) / turn for c, s in zip(corners, sides, strict=True)]
+    box = []
+    for k in range(4):  # corner k is where side k - 1 meets side k
+        across, level = (k, k - 1) if along[k - 1] else (k - 1, k)
+        box.append(complex(middles[across].real, middles[level].imag) * turn)
+    to = np.linalg.inv(fit.back)
+    z = _in_frame(to, box)
+    off = _in_frame(to, [c - b for c, b in zip(corners, box, strict=True)])
+    extra = 0.0
+    for k in range(4):  # the mean over a side of a squared distance that is linear along it
+        edge = z[(k + 1) % 4] - z[k]
+        normal = 1j * edge / max(abs(edge), 1e-9)
+        p, q = (normal.conjugate() * off[k]).real, (normal.conjugate() * off[(k + 1) % 4]).real
+        extra += (p * p + p * q + q * q) / 12
+    return np.array([[b.real, b.imag] for b in box]), extra
+
+
+def _in_frame(to: Array, points: list[complex]) -> list[complex]:
+    (a, b), (c, d) = to.tolist()
+    return [complex(a * p.real + b * p.imag, c * p.real + d * p.imag) for p in points]
