@@ -56,7 +56,11 @@ def interpret(
     view = _view(sketch, scale)
     ppm = view.pixels_per_metre
     pivots, doubles = _small_circles(readings)
-    solid = [r for r in readings if r.kind in ("circle", "rectangle", "polygon", "bar") and r not in pivots and r not in doubles]
+    solid = [
+        r
+        for r in readings
+        if r.kind in ("circle", "rectangle", "polygon", "bar") and r not in pivots and r not in doubles
+    ]
     drawn = [_drawn(r, k, ppm, _pen(sketch)) for k, r in enumerate(solid)]
     names = {id(d.reading): d.body.id for d in drawn}
     for reading in readings:
@@ -217,7 +221,10 @@ def _small_circles(
             pair = sorted((r for _, r in under[:2]), key=bodies.index)
             if under[1][0] > 0 and not _meet(pair[0].outline, pair[1].outline, centre, radius):
                 continue
-            twin = next((p for p, (at, same) in pivots.items() if same == pair and math.dist(at, centre) < radius), None)
+            twin = next(
+                (p for p, (at, same) in pivots.items() if same == pair and math.dist(at, centre) < radius),
+                None,
+            )
             if twin is None:
                 pivots[reading] = (centre, pair)
             else:  # drawn twice

@@ -10,11 +10,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SIDES", "ArrowFit", "ClosedFit", "Strokes", "depth", "fit_arrow", "fit_closed", "measure", "off_outline"]
+__all__ = [
+    "SIDES",
+    "ArrowFit",
+    "ClosedFit",
+    "Strokes",
+    "depth",
+    "fit_arrow",
+    "fit_closed",
+    "measure",
+    "off_outline",
+]
 
 Array = NDArray[np.float64]
 
-SAMPLES, SIDES, BENDS = 64, 14, 6  # as in core/fit.h and core/strokes.c
+SAMPLES, SIDES, BENDS = 48, 12, 6  # as in core/fit.h and core/strokes.c
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
@@ -149,7 +159,15 @@ def fit_arrow(
     out = np.empty(11 + len(names))
     at, given = out.ctypes.data, inputs.ctypes.data
     if not _arrow(
-        strokes.samples.ctypes.data, chosen.ctypes.data, len(names), given, given + 16, at, at + 48, at + 72, at + 88
+        strokes.samples.ctypes.data,
+        chosen.ctypes.data,
+        len(names),
+        given,
+        given + 16,
+        at,
+        at + 48,
+        at + 72,
+        at + 88,
     ):
         return None
     values = out.tolist()

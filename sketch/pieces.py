@@ -96,7 +96,12 @@ def page_of(sketch: Sketch) -> Page:
 
 
 def _piece(
-    index: int, s: int, points: Array, m: list[float], residual: list[float], vertices: list[list[list[float]]]
+    index: int,
+    s: int,
+    points: Array,
+    m: list[float],
+    residual: list[float],
+    vertices: list[list[list[float]]],
 ) -> Piece:
     length, x0, y0, x1, y1, gap, spread, across = m
     extent = 3 * spread

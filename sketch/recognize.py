@@ -103,7 +103,10 @@ def _gone_over(page: Page, found: list[Fitted]) -> list[Fitted]:
     """The readings of an outline together with the other pieces that run along it, as drawn once more."""
     best = min(found, key=lambda f: f.cost)
     reach = 0.3 * best.scale
-    (x0, y0), (x1, y1) = (best.outline.min(axis=0) - reach).tolist(), (best.outline.max(axis=0) + reach).tolist()
+    (x0, y0), (x1, y1) = (
+        (best.outline.min(axis=0) - reach).tolist(),
+        (best.outline.max(axis=0) + reach).tolist(),
+    )
     costs: dict[int, float] = {}
     for p in page.pieces:
         if p.box[0] < x0 or p.box[1] < y0 or p.box[2] > x1 or p.box[3] > y1 or p.index in best.pieces:

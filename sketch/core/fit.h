@@ -11,8 +11,8 @@
 #endif
 
 enum {
-    SAMPLES = 64, /* of a piece of ink: a rectangle's side still has a dozen */
-    SIDES = 14    /* the most sides that are told apart; beyond, an outline is round or free */
+    SAMPLES = 48, /* of a piece of ink: a rectangle's side still has a dozen */
+    SIDES = 12    /* the most sides that are told apart; beyond, an outline is round or free */
 };
 
 /* All segmentations of one row of samples: sums over any run of them in constant time. */

@@ -48,6 +48,7 @@ static Frame normal_frame(const double *xy, int n, double least_axis)
     return f;
 }
 
+enum { ROUNDS = 2 };
 static const double PI = 3.14159265358979323846;
 static const double TREMOR = 0.05;     /* spread of ink about what was meant, in the frame: a share of the radius */
 static const double SLOPPY = 0.1;      /* nobody's ink is off by much more than this */
@@ -294,7 +295,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin
          * again from corners found that way. */
         int start = 0;
-        for (int round = 0; round < 3; round++) {
+        for (int round = 0; round < ROUNDS; round++) {
             runs_split(&r, way, start, SIDES, total, cut);
             for (int k = 3; k <= SIDES; k++) {
                 double s = fit_polygon(&r, factor, start, cut[k], k, STIFFNESS[way], cap2, polygon, &odd, &around);
@@ -305,7 +306,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
                     memcpy(vertices + 2 * SIDES * k, polygon, 2 * k * sizeof *polygon);
                 }
             }
-            start = (start + cut[round == 0 ? 5 : 4][2]) % SAMPLES;
+            start = (start + cut[5][2]) % SAMPLES;
         }
     }
 }

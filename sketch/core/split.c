@@ -124,26 +124,33 @@ Line runs_line(const Runs *r, int first, int count, double stiffness)
 void runs_split(const Runs *r, int way, int start, int kmax, double total[SIDES + 1], int cut[SIDES + 1][SIDES + 1])
 {
     int n = r->n;
-    double best[SIDES + 1][SAMPLES + 1];
+    double best[SIDES + 1][SAMPLES + 1], run[SAMPLES + 1][SAMPLES + 1]; /* run[j][i]: cost of samples i .. j-1 */
     int16_t from[SIDES + 1][SAMPLES + 1];
+    for (int i = 0; i < n; i++) {
+        const double *row = r->cost[way][start + i < n ? start + i : start + i - n];
+        for (int j = i; j <= n; j++)
+            run[j][i] = row[j - i];
+    }
     for (int j = 0; j <= n; j++) {
-        best[1][j] = r->cost[way][start % n][j];
+        best[1][j] = j ? run[j][0] : 0;
         from[1][j] = 0;
     }
-    for (int k = 2; k <= kmax; k++)
+    for (int k = 2; k <= kmax; k++) {
+        int least = 2 * (k - 1); /* a run has two samples or more */
         for (int j = 0; j <= n; j++) {
-            double least = INFINITY;
+            double low = INFINITY;
             int at = 0;
-            for (int i = 2 * (k - 1); i <= j - 2; i++) { /* a run has two samples or more */
-                double c = best[k - 1][i] + r->cost[way][(start + i) % n][j - i];
-                if (c < least) {
-                    least = c;
+            for (int i = least; i <= j - 2; i++) {
+                double c = best[k - 1][i] + run[j][i];
+                if (c < low) {
+                    low = c;
                     at = i;
                 }
             }
-            best[k][j] = least;
+            best[k][j] = low;
             from[k][j] = (int16_t)at;
         }
+    }
     for (int k = 1; k <= kmax; k++) {
         total[k] = best[k][n];
         cut[k][k] = n;
