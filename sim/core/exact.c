@@ -14,6 +14,7 @@ int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, d
     /* A gap of a twentieth of the tolerance moves nothing farther than that; rounding sets the least. */
     Slack slack = {.gap = fmax(0.05 * tolerance, 1e-10 * world->size), .root = 1e-14 * world->size};
     slack.speed = slack.gap;
+    slack.deep = fmax(4 * slack.gap, 0.05 * world->thinnest);
     *e = (Exact){.world = world, .recorder = recorder, .slack = slack, .tolerance = tolerance, .end = end};
     e->track = calloc(n, sizeof *e->track);
     e->island = calloc(n, sizeof *e->island);

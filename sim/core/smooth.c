@@ -6,7 +6,7 @@
 #define LOCAL 0.02            /* the part of the tolerance that one step may err by */
 #define RELAX 1e-10           /* makes redundant rows solvable; refinement takes its effect away again */
 #define RELAX_PROJECTION 1e-6 /* the same for projection, which is iterated anyway */
-#define FARTHEST 100.0        /* times the error that is corrected: a correction goes no farther */
+#define FARTHEST 20.0         /* times the error that is corrected: a correction goes no farther */
 #define DECISIVE 1e-9         /* how far past its limit a force is when its event is taken, of the forces about */
 #define UNSURE 0.02       /* forces that redundant contacts may share out otherwise: ask again after this time [s] */
 #define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
@@ -225,17 +225,18 @@ static void move(const System *system, int32_t i, const double *f, double by) {
     state->angle += by * body->inverse_moment * f[2];
 }
 
-/* Rows that nearly say the same, and differ by rounding, would be met by running far away: no correction may be much larger
- * than what it corrects.  Those that are stay as they were. */
+/* Rows that nearly say the same, and differ by rounding, would be met by running far away: a correction that is much larger than
+ * what it corrects is not made. */
 static void keep_if_small(System *system, const double *before, double worst) {
-    for (int32_t i = 0; i < system->count; i++, before += 6) {
+    bool small = true;
+    for (int32_t i = 0; i < system->count; i++) {
         const State *s = &system->state[i];
+        const double *b = before + 6 * i;
         double reach = system->world->body[system->member[i]].reach, most = FARTHEST * worst;
-        bool near = hypot(s->p.x - before[0], s->p.y - before[1]) + reach * fabs(s->angle - before[2]) <= most;
-        bool slow = hypot(s->v.x - before[3], s->v.y - before[4]) + reach * fabs(s->spin - before[5]) <= most;
-        if (!near || !slow)
-            system->state[i] = (State){vec(before[0], before[1]), before[2], vec(before[3], before[4]), before[5]};
+        small = small && hypot(s->p.x - b[0], s->p.y - b[1]) + reach * fabs(s->angle - b[2]) <= most;
+        small = small && hypot(s->v.x - b[3], s->v.y - b[4]) + reach * fabs(s->spin - b[5]) <= most;
     }
+    if (!small) load(system, before);
 }
 
 /* Newton's method on the positions: the first pass leaves the square of the error. */

@@ -89,12 +89,13 @@ static bool is_closed(const Search *s, const Feature *f) {
 static double feature_step(const Slack *slack, const Gap *g, const PairBound *bound, double steer) {
     double aside = -g->margin - slack->gap; /* how far the foot is from where a touch could be */
     double until_margin = aside > 0 ? aside / bound->closing : 0;
-    if (aside <= 0 && g->gap <= slack->root && g->gap > -3 * slack->gap && g->rate < -slack->speed) return 0;
-    if (aside <= 0 && g->gap < -slack->gap && g->gap > -3 * slack->gap && g->rate < -1e-6 * slack->speed) return 0;
+    bool in_front = g->gap > -slack->deep;
+    if (aside <= 0 && in_front && g->gap <= slack->root && g->rate < -slack->speed) return 0;
+    if (aside <= 0 && in_front && g->gap < -slack->gap && g->rate < -1e-6 * slack->speed) return 0;
     double step;
-    if (g->gap > slack->root || (g->gap > -3 * slack->gap && g->rate > slack->speed)) /* clear, or on its way out */
+    if (g->gap > slack->root || (in_front && g->rate > slack->speed)) /* clear, or on its way out */
         step = safe_step(fmax(g->gap, 0), g->rate, steer);
-    else if (g->gap > -3 * slack->gap) /* grazing: it matters again when it has gone in by the slack, or come free */
+    else if (in_front) /* grazing: it matters again when it has gone in by the slack, or come free */
         step = fmax(safe_step(fmax(g->gap + 2 * slack->gap, slack->gap), 0, steer), 1e-9);
     else /* behind the side: it has to come in front of it first */
         step = fmax(safe_step(-g->gap, -g->rate, steer), 1e-5);
@@ -198,7 +199,7 @@ int32_t touching_now(const World *world, int32_t body_a, const State *state_a, i
                 bool a_first = t.feature.body_a == body_a;
                 const Placed *point_of = a_first ? &pa : &pb;
                 t.gap = feature_gap(&t.feature, point_of, a_first ? &pb : &pa);
-                if (fabs(t.gap.gap) > 4 * slack->gap || t.gap.gap > slack->gap || t.gap.margin < -slack->gap) continue;
+                if (t.gap.gap > slack->gap || t.gap.gap < -slack->deep || t.gap.margin < -slack->gap) continue;
                 if (!leads_away(world, &t.feature, point_of, t.gap.normal, slack)) continue;
                 if (count < capacity && !merge_same_point(out, count, &t, 8 * slack->gap)) out[count++] = t;
             }

@@ -9,6 +9,8 @@ typedef struct Slack {
     double gap;   /* a gap this small counts as closed [m] */
     double speed; /* a speed this small counts as none [m/s] */
     double root;  /* a gap is solved for to this [m]: rounding */
+    double
+        deep; /* overlaps up to this are contacts that rounding has pushed in; beyond, the point is behind the side [m] */
 } Slack;
 
 typedef struct Touching {

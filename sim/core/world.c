@@ -211,6 +211,18 @@ static int add_joints(World *world, const SimInput *input) {
     return SIM_OK;
 }
 
+/* Twice the area over the perimeter: a bar's thickness. */
+static double shape_width(const World *world, const Shape *shape) {
+    if (shape->count == 1) return shape->radius;
+    const Vec *v = &world->vertex[shape->first];
+    double area = 0, perimeter = 0;
+    for (int32_t i = 0; i < shape->count; i++) {
+        area += vcross(vsub(v[i], v[0]), vsub(v[(i + 1) % shape->count], v[0])) / 2;
+        perimeter += world->side[shape->first + i].length;
+    }
+    return 2 * area / perimeter;
+}
+
 /* ---------------------------------------------------------------- the whole */
 
 /* The carrier of each input, bodies numbered in the order of their first member, the background 0. */
@@ -263,6 +275,9 @@ int world_create(World *world, const SimInput *input) {
     make_bodies(world, input, parent, member, group_size);
     for (int32_t i = 0; i < world->shape_count; i++) size = fmax(size, world->shape[i].reach);
     world->size = size;
+    world->thinnest = INFINITY;
+    for (int32_t i = 0; i < world->shape_count; i++)
+        world->thinnest = fmin(world->thinnest, shape_width(world, &world->shape[i]));
     status = add_joints(world, input);
 out:
     free(parent);

@@ -78,7 +78,8 @@ typedef struct World {
     int32_t *source_shape; /* the shape of each input body */
     uint64_t *apart;       /* sorted keys of the pairs of shapes that do not collide: joined, or let overlap */
     int32_t apart_count, apart_capacity;
-    double size; /* a length of the scene's order, for tolerances that scale with rounding [m] */
+    double size;     /* a length of the scene's order, for tolerances that scale with rounding [m] */
+    double thinnest; /* width of the thinnest shape, about [m] */
     SimProfile profile;
     const char *error;
 } World;
