@@ -109,7 +109,6 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     }
     if (status != SIM_OK) return status;
     move(crowd, dt);
-    touch_advance(crowd, dt);
     crowd->moment++;
     pivots_solve(crowd->pivot, crowd->pivot_count, mover, rigid);
     contacts_part(crowd->contact, crowd->contact_count, mover);
@@ -135,6 +134,10 @@ static int frame(Crowd *crowd, World *world, double dt) {
     int32_t substeps = (int32_t)ceil(SUBSTEPS * dt / FRAME - 1e-9);
     if (substeps < 1) substeps = 1;
     double h = dt / substeps;
+    double scale = crowd->substep > 0 ? h / crowd->substep : 0;
+    crowd->substep = h;
+    memory_scale(&crowd->memory, scale);
+    for (int32_t i = 0; i < world->joint_count; i++) crowd->joint_impulse[i] = vscale(crowd->joint_impulse[i], scale);
     int status = touch_frame(crowd, world, dt, h);
     if (status != SIM_OK) return status;
     load_pivots(crowd, world);
@@ -143,6 +146,8 @@ static int frame(Crowd *crowd, World *world, double dt) {
     if (status != SIM_OK) return status;
     store(crowd, world);
     rest_update(crowd, world, dt);
+    status = touch_store_near(crowd);
+    if (status != SIM_OK) return status;
     return memory_store(&crowd->memory, crowd->contact, crowd->contact_count, crowd->mover);
 }
 

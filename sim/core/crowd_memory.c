@@ -12,26 +12,60 @@ static uint32_t hash(uint64_t key) {
     return (uint32_t)(key >> 33);
 }
 
-void memory_destroy(Memory *memory) {
-    free(memory->record);
-    free(memory->spare);
-    free(memory->slot);
+/* Where the key is, or the empty slot where it would be. */
+static int32_t slot_of(const uint64_t *table, int32_t slots, uint64_t key) {
+    uint32_t mask = (uint32_t)slots - 1, at = hash(key) & mask;
+    while (table[at] != 0 && table[at] != key) at = (at + 1) & mask;
+    return (int32_t)at;
 }
 
-static int memory_room(Memory *memory, int32_t count) {
-    if (count <= memory->capacity) return SIM_OK;
-    int32_t capacity = 2 * count + 64, slots = 128;
-    while (slots < 2 * capacity) slots *= 2;
-    Record *record = realloc(memory->record, (size_t)capacity * sizeof *record);
-    if (record) memory->record = record;
-    Record *spare = realloc(memory->spare, (size_t)capacity * sizeof *spare);
-    if (spare) memory->spare = spare;
-    int32_t *slot = realloc(memory->slot, (size_t)slots * sizeof *slot);
-    if (slot) memory->slot = slot;
-    if (!record || !spare || !slot) return SIM_OUT_OF_MEMORY;
-    memory->slots = slots;
-    memory->capacity = capacity;
+void index_destroy(Index *index) {
+    free(index->key);
+    free(index->value);
+}
+
+int index_room(Index *index, int32_t count) {
+    if (2 * count < index->slots) return SIM_OK;
+    int32_t slots = 256;
+    while (slots < 4 * count) slots *= 2;
+    uint64_t *key = calloc((size_t)slots, sizeof *key);
+    int32_t *value = malloc((size_t)slots * sizeof *value);
+    if (!key || !value) {
+        free(key);
+        free(value);
+        return SIM_OUT_OF_MEMORY;
+    }
+    for (int32_t i = 0; i < index->slots; i++) {
+        if (index->key[i] == 0) continue;
+        int32_t at = slot_of(key, slots, index->key[i]);
+        key[at] = index->key[i];
+        value[at] = index->value[i];
+    }
+    index_destroy(index);
+    index->key = key;
+    index->value = value;
+    index->slots = slots;
     return SIM_OK;
+}
+
+void index_clear(Index *index) {
+    index->count = 0;
+    if (index->key) memset(index->key, 0, (size_t)index->slots * sizeof *index->key);
+}
+
+bool index_add(Index *index, uint64_t key, int32_t value) {
+    int32_t at = slot_of(index->key, index->slots, key);
+    if (index->key[at] == key) return false;
+    index->key[at] = key;
+    index->value[at] = value;
+    index->count++;
+    return true;
+}
+
+int32_t index_find(const Index *index, uint64_t key) {
+    if (index->count <= 0) return -1;
+    int32_t at = slot_of(index->key, index->slots, key);
+    return index->key[at] == key ? index->value[at] : -1;
 }
 
 Record contact_record(const Contact *c) {
@@ -44,9 +78,28 @@ Record contact_record(const Contact *c) {
     return r;
 }
 
+void memory_destroy(Memory *memory) {
+    free(memory->record);
+    free(memory->spare);
+    index_destroy(&memory->index);
+}
+
+static int memory_room(Memory *memory, int32_t count) {
+    if (index_room(&memory->index, count) != SIM_OK) return SIM_OUT_OF_MEMORY;
+    if (count <= memory->capacity) return SIM_OK;
+    int32_t capacity = 2 * count + 64;
+    Record *record = realloc(memory->record, (size_t)capacity * sizeof *record);
+    if (record) memory->record = record;
+    Record *spare = realloc(memory->spare, (size_t)capacity * sizeof *spare);
+    if (spare) memory->spare = spare;
+    if (!record || !spare) return SIM_OUT_OF_MEMORY;
+    memory->capacity = capacity;
+    return SIM_OK;
+}
+
 int memory_store(Memory *memory, const Contact *contact, int32_t count, const Mover *mover) {
     int status = memory_room(memory, memory->count + count);
-    if (status != SIM_OK || !memory->slot) return status;
+    if (status != SIM_OK) return status;
     int32_t kept = 0;
     for (int32_t i = 0; i < count; i++)
         if (contact[i].count > 0) memory->spare[kept++] = contact_record(&contact[i]);
@@ -58,54 +111,21 @@ int memory_store(Memory *memory, const Contact *contact, int32_t count, const Mo
     memory->record = memory->spare;
     memory->spare = swap;
     memory->count = kept;
-    memset(memory->slot, 0xff, (size_t)memory->slots * sizeof *memory->slot);
-    uint32_t mask = (uint32_t)memory->slots - 1;
-    for (int32_t i = 0; i < kept; i++) {
-        uint32_t at = hash(memory->record[i].key) & mask;
-        while (memory->slot[at] >= 0) at = (at + 1) & mask;
-        memory->slot[at] = i;
-    }
+    index_clear(&memory->index);
+    for (int32_t i = 0; i < kept; i++) index_add(&memory->index, memory->record[i].key, i);
     return SIM_OK;
+}
+
+void memory_scale(Memory *memory, double by) {
+    if (by == 1) return;
+    for (int32_t i = 0; i < memory->count; i++)
+        for (int32_t k = 0; k < memory->record[i].count; k++) {
+            memory->record[i].impulse_n[k] *= by;
+            memory->record[i].impulse_t[k] *= by;
+        }
 }
 
 const Record *memory_recall(const Memory *memory, uint64_t key) {
-    if (memory->count == 0) return NULL;
-    uint32_t mask = (uint32_t)memory->slots - 1;
-    for (uint32_t at = hash(key) & mask; memory->slot[at] >= 0; at = (at + 1) & mask)
-        if (memory->record[memory->slot[at]].key == key) return &memory->record[memory->slot[at]];
-    return NULL;
-}
-
-static void insert(uint64_t *table, int32_t slots, uint64_t key) {
-    uint32_t mask = (uint32_t)slots - 1, at = hash(key) & mask;
-    while (table[at] != 0) at = (at + 1) & mask;
-    table[at] = key;
-}
-
-int keyset_room(KeySet *set, int32_t count) {
-    if (2 * count < set->slots) return SIM_OK;
-    int32_t slots = 256;
-    while (slots < 4 * count) slots *= 2;
-    uint64_t *key = calloc((size_t)slots, sizeof *key);
-    if (!key) return SIM_OUT_OF_MEMORY;
-    for (int32_t i = 0; i < set->slots; i++)
-        if (set->key[i] != 0) insert(key, slots, set->key[i]);
-    free(set->key);
-    set->key = key;
-    set->slots = slots;
-    return SIM_OK;
-}
-
-void keyset_clear(KeySet *set) {
-    set->count = 0;
-    if (set->key) memset(set->key, 0, (size_t)set->slots * sizeof *set->key);
-}
-
-bool keyset_add(KeySet *set, uint64_t key) {
-    uint32_t mask = (uint32_t)set->slots - 1;
-    for (uint32_t at = hash(key) & mask; set->key[at] != 0; at = (at + 1) & mask)
-        if (set->key[at] == key) return false;
-    insert(set->key, set->slots, key);
-    set->count++;
-    return true;
+    int32_t at = index_find(&memory->index, key);
+    return at < 0 ? NULL : &memory->record[at];
 }

@@ -11,6 +11,19 @@ static inline uint64_t pair_key(int32_t piece_a, int32_t piece_b) {
     return (uint64_t)(uint32_t)piece_a << 32 | (uint32_t)piece_b;
 }
 
+/* Numbers by pair. */
+typedef struct Index {
+    uint64_t *key; /* open addressing; 0: empty, as no pair is of piece 0 twice */
+    int32_t *value;
+    int32_t slots, count;
+} Index;
+
+void index_destroy(Index *index);
+int index_room(Index *index, int32_t count); /* keeps what is in it */
+void index_clear(Index *index);
+bool index_add(Index *index, uint64_t key, int32_t value); /* whether the key is new; there must be room */
+int32_t index_find(const Index *index, uint64_t key);      /* -1: not there */
+
 /* The impulses of a contact, for warm starting. */
 typedef struct Record {
     uint64_t key;
@@ -19,11 +32,12 @@ typedef struct Record {
     double impulse_n[2], impulse_t[2];
 } Record;
 
+Record contact_record(const Contact *contact);
+
 typedef struct Memory {
     Record *record, *spare;
     int32_t count, capacity;
-    int32_t *slot; /* open addressing into record; -1: empty */
-    int32_t slots; /* a power of two */
+    Index index;
 } Memory;
 
 void memory_destroy(Memory *memory);
@@ -32,19 +46,10 @@ void memory_destroy(Memory *memory);
  * needed when they wake. Returns SIM_OK or SIM_OUT_OF_MEMORY. */
 int memory_store(Memory *memory, const Contact *contact, int32_t count, const Mover *mover);
 
+/* Impulses are of a substep: another length of it scales them. */
+void memory_scale(Memory *memory, double by);
+
 /* NULL when nothing is known of the pair. */
 const Record *memory_recall(const Memory *memory, uint64_t key);
-
-Record contact_record(const Contact *contact);
-
-/* A set of pairs. */
-typedef struct KeySet {
-    uint64_t *key; /* open addressing; 0: empty, as no pair is of piece 0 twice */
-    int32_t slots, count;
-} KeySet;
-
-int keyset_room(KeySet *set, int32_t count);
-void keyset_clear(KeySet *set);
-bool keyset_add(KeySet *set, uint64_t key); /* whether it is new; there must be room */
 
 #endif

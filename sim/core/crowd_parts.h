@@ -10,9 +10,11 @@
 /* Two pieces whose boxes meet but that do not touch yet: they cannot before the gap along the normal is used up. */
 typedef struct Near {
     int32_t piece_a, piece_b;
-    int32_t a, b; /* bodies */
-    Vec normal;   /* of an axis that separates them */
-    double gap;
+    int32_t a, b;       /* bodies */
+    Vec normal;         /* of an axis that separates them */
+    double gap;         /* when the bodies had moved and turned so much in the frame: */
+    Vec moved;          /* b against a */
+    double turned_a, turned_b;
 } Near;
 
 /* How far a body may move in the frame before what it may meet is looked for anew. */
@@ -23,6 +25,7 @@ typedef struct Range {
 
 struct Crowd {
     double tolerance;
+    double substep;      /* the last one's length: impulses are of that long */
     int32_t body_count, shape_count, piece_count;
     Mover *mover;        /* by body */
     int32_t *active;     /* the bodies that take part in the frame */
@@ -37,11 +40,13 @@ struct Crowd {
     Box *piece_box;      /* by piece, when the frame began, without margins */
     Box *shape_box;      /* by shape: all that it may sweep in the frame */
     Range *range;        /* by body: within which those boxes hold */
-    KeySet known;        /* the pairs of pieces that are contacts or near ones, once a body has left its range; else -1 of them */
+    Index known;         /* the pairs of pieces that are contacts or near ones, once a body has left its range; else -1 of them */
     bool *shape_moves;
     Sweep sweep;
     Near *near;
     int32_t near_count, near_capacity;
+    Near *last_near;     /* of the frame before, with their gaps when it ended */
+    Index last_index;
     Contact *contact;
     int32_t contact_count, contact_capacity;
     Memory memory;
@@ -68,7 +73,7 @@ void touch_place(Crowd *crowd, const World *world, int32_t body);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
 void touch_refresh(Crowd *crowd, World *world, double left, double threshold);
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
-void touch_advance(Crowd *crowd, double substep);
+int touch_store_near(Crowd *crowd);
 
 /* crowd_rest.c */
 int rest_create(Crowd *crowd, const World *world);

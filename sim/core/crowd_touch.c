@@ -24,8 +24,10 @@ static int near_room(Crowd *crowd, int32_t count) {
     if (count <= crowd->near_capacity) return SIM_OK;
     int32_t capacity = 2 * count + 64;
     Near *near = realloc(crowd->near, (size_t)capacity * sizeof *near);
-    if (!near) return SIM_OUT_OF_MEMORY;
-    crowd->near = near;
+    if (near) crowd->near = near;
+    Near *last = realloc(crowd->last_near, (size_t)capacity * sizeof *last);
+    if (last) crowd->last_near = last;
+    if (!near || !last) return SIM_OUT_OF_MEMORY;
     crowd->near_capacity = capacity;
     return SIM_OK;
 }
@@ -62,7 +64,9 @@ void touch_destroy(Crowd *crowd) {
     free(crowd->range);
     free(crowd->start_angle);
     free(crowd->body_swing);
-    free(crowd->known.key);
+    index_destroy(&crowd->known);
+    index_destroy(&crowd->last_index);
+    free(crowd->last_near);
     sweep_destroy(&crowd->sweep);
     free(crowd->near);
     free(crowd->contact);
@@ -126,6 +130,24 @@ static void start_body(Crowd *crowd, const World *world, int32_t body, double dt
     crowd->range[body] = (Range){{0, 0}, {0, 0}, 0};
     if (b->mode == MODE_CROWD) widen_range(crowd, world, body, dt);
     sweep_boxes(crowd, world, body);
+}
+
+/* How far a near pair is apart at least, as the bodies have moved since it was looked at. */
+static inline double gap_now(const Crowd *crowd, const Near *n) {
+    const Mover *a = &crowd->mover[n->a], *b = &crowd->mover[n->b];
+    Vec moved = vsub(vsub(b->moved, a->moved), n->moved);
+    return n->gap + vdot(n->normal, moved) - fabs(a->turned - n->turned_a) * crowd->posed.swing[n->piece_a] -
+           fabs(b->turned - n->turned_b) * crowd->posed.swing[n->piece_b];
+}
+
+/* The gap and its normal hold for where the bodies are now. */
+static inline void set_near(const Crowd *crowd, Near *n, Vec normal, double gap) {
+    const Mover *a = &crowd->mover[n->a], *b = &crowd->mover[n->b];
+    n->normal = normal;
+    n->gap = gap;
+    n->moved = vsub(b->moved, a->moved);
+    n->turned_a = a->turned;
+    n->turned_b = b->turned;
 }
 
 /* How much nearer two bodies' pieces can come along the normal in dt, at their present velocities. */
@@ -216,8 +238,7 @@ static void find_manifold(Crowd *crowd, World *world, int32_t piece_a, int32_t p
 static bool look(Crowd *crowd, World *world, Near *near, double soon, double later) {
     Manifold m;
     find_manifold(crowd, world, near->piece_a, near->piece_b, near->a, near->b, later, &m);
-    near->normal = m.normal;
-    near->gap = m.gap;
+    set_near(crowd, near, m.normal, m.gap);
     if (m.count == 0 || m.gap > soon) return false;
     add_contact(crowd, world, near, &m);
     return true;
@@ -249,8 +270,15 @@ static int consider(Crowd *crowd, World *world, Near near, double dt, double sub
     double skin = skin_of(world, &near), later = closing(crowd, world, &near, dt) + skin;
     double soon = closing(crowd, world, &near, substep) + skin;
     bool contact = false;
-    near.gap = box_gap(&crowd->piece_box[near.piece_a], &crowd->piece_box[near.piece_b], &near.normal);
-    if (near.gap <= soon)
+    Vec normal;
+    double gap = box_gap(&crowd->piece_box[near.piece_a], &crowd->piece_box[near.piece_b], &normal);
+    int32_t last = gap <= soon ? index_find(&crowd->last_index, pair_key(near.piece_a, near.piece_b)) : -1;
+    if (last >= 0 && crowd->last_near[last].gap > gap) {
+        gap = crowd->last_near[last].gap;
+        normal = crowd->last_near[last].normal;
+    }
+    set_near(crowd, &near, normal, gap);
+    if (gap <= soon)
         contact = look(crowd, world, &near, soon, later + MORE * least_reach(world, near.piece_a, near.piece_b));
     if (!contact) crowd->near[crowd->near_count++] = near;
     if (near.gap > later) return SIM_OK;
@@ -278,7 +306,7 @@ static int consider_shapes(Crowd *crowd, World *world, Pair pair, double dt, dou
                 Box box_b = swept(crowd->piece_box[q], &crowd->range[sb->body]);
                 if (!boxes_meet(&box_a, &box_b)) continue;
             }
-            Near near = {p, q, sa->body, sb->body, {0, 0}, 0};
+            Near near = {.piece_a = p, .piece_b = q, .a = sa->body, .b = sb->body};
             int status = consider(crowd, world, near, dt, substep, woke);
             if (status != SIM_OK) return status;
         }
@@ -339,7 +367,7 @@ void touch_refresh(Crowd *crowd, World *world, double left, double threshold) {
         Vec shifted = vsub(vsub(b->moved, a->moved), c->moved);
         double turned = b->turned - a->turned - c->turned;
         if (fabs(turned) < TURN && fabs(shifted.x) + fabs(shifted.y) < c->slack) continue;
-        Near near = {(int32_t)(c->key >> 32), (int32_t)(c->key & 0xffffffffu), c->a, c->b, c->normal, 0};
+        Near near = {.piece_a = (int32_t)(c->key >> 32), .piece_b = (int32_t)(c->key & 0xffffffffu), .a = c->a, .b = c->b};
         Manifold m;
         find_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b, closing(crowd, world, &near, left) + c->slack, &m);
         Record old = contact_record(c);
@@ -350,13 +378,13 @@ void touch_refresh(Crowd *crowd, World *world, double left, double threshold) {
 
 /* All pairs of pieces that are contacts or near ones. */
 static int fill_known(Crowd *crowd) {
-    KeySet *known = &crowd->known;
-    int status = keyset_room(known, crowd->near_count + crowd->contact_count + 1);
+    Index *known = &crowd->known;
+    int status = index_room(known, crowd->near_count + crowd->contact_count + 1);
     if (status != SIM_OK) return status;
-    keyset_clear(known);
-    for (int32_t i = 0; i < crowd->contact_count; i++) keyset_add(known, crowd->contact[i].key);
+    index_clear(known);
+    for (int32_t i = 0; i < crowd->contact_count; i++) index_add(known, crowd->contact[i].key, 0);
     for (int32_t i = 0; i < crowd->near_count; i++)
-        keyset_add(known, pair_key(crowd->near[i].piece_a, crowd->near[i].piece_b));
+        index_add(known, pair_key(crowd->near[i].piece_a, crowd->near[i].piece_b), 0);
     return SIM_OK;
 }
 
@@ -368,11 +396,12 @@ static int add_near(Crowd *crowd, const World *world, int32_t shape_a, int32_t s
             Box box_a = swept(crowd->piece_box[p], &crowd->range[sa->body]);
             Box box_b = swept(crowd->piece_box[q], &crowd->range[sb->body]);
             if (!boxes_meet(&box_a, &box_b)) continue;
-            if (keyset_room(&crowd->known, crowd->known.count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
-            if (!keyset_add(&crowd->known, pair_key(p, q))) continue;
+            if (index_room(&crowd->known, crowd->known.count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
+            if (!index_add(&crowd->known, pair_key(p, q), 0)) continue;
             if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
             if (contact_room(crowd, crowd->contact_count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
-            crowd->near[crowd->near_count++] = (Near){p, q, sa->body, sb->body, {0, 0}, 0};
+            crowd->near[crowd->near_count++] = 
+                (Near){.piece_a = p, .piece_b = q, .a = sa->body, .b = sb->body, .gap = -INFINITY};
         }
     return SIM_OK;
 }
@@ -416,7 +445,7 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     int32_t kept = 0, before = crowd->contact_count;
     for (int32_t i = 0; i < crowd->near_count; i++) {
         Near *near = &crowd->near[i];
-        if (near->gap - approach(crowd, near, substep) <= 0) {
+        if (gap_now(crowd, near) <= approach(crowd, near, substep)) {
             double soon = closing(crowd, world, near, substep), later = closing(crowd, world, near, left);
             if (look(crowd, world, near, soon, soon + later + MORE * least_reach(world, near->piece_a, near->piece_b))) {
                 if (crowd->mover[near->a].inverse_mass > 0) crowd->heat[near->a] = crowd->passes;
@@ -435,8 +464,17 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     return SIM_OK;
 }
 
-/* After the bodies have moved: what is left of the gaps. */
-void touch_advance(Crowd *crowd, double substep) {
-    for (int32_t i = 0; i < crowd->near_count; i++)
-        crowd->near[i].gap -= approach(crowd, &crowd->near[i], substep);
+/* At the end of a frame: what is known of the gaps, for the next one. */
+int touch_store_near(Crowd *crowd) {
+    if (index_room(&crowd->last_index, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
+    index_clear(&crowd->last_index);
+    for (int32_t i = 0; i < crowd->near_count; i++) {
+        Near *near = &crowd->near[i];
+        near->gap = gap_now(crowd, near);
+        index_add(&crowd->last_index, pair_key(near->piece_a, near->piece_b), i);
+    }
+    Near *swap = crowd->last_near;
+    crowd->last_near = crowd->near;
+    crowd->near = swap;
+    return SIM_OK;
 }
