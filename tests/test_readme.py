@@ -84,7 +84,7 @@ def test_the_options_of_simulate_are_all_listed(capsys: pytest.CaptureFixture[st
     assert main(["simulate", "--help"]) == 0
     options = set(re.findall(r"(?<![\w-])--[a-z-]+", capsys.readouterr().out)) - {"--help"}
     table = TEXT[TEXT.index("| `simulate` |") :]
-    assert {option for option in options if f"| `{option}" not in table} == set()
+    assert {option for option in options if f"`{option}" not in table} == set()
 
 
 def test_the_endings_of_outputs_are_all_listed() -> None:
