@@ -274,8 +274,8 @@ def wrecker(page: Page) -> None:
     """A wrecking ball and a wall of bricks."""
     page.rectangle((640, 670), (1180, 44), anchored=True)
     page.rectangle((130, 390), (56, 510), anchored=True)
-    jib = page.beam((104, 104), (690, 104), 48, anchored=True)
-    top, ball = (650, 108), (330, 300)
+    jib = page.beam((104, 104), (590, 104), 48, anchored=True)
+    top, ball = (550, 108), (262, 300)
     length = math.dist(top, ball)
     joints = [along(top, ball, length * k / 3) for k in range(4)]
     links = [
@@ -288,7 +288,8 @@ def wrecker(page: Page) -> None:
     for row in range(6):
         bricks = [(-40, 78), (40, 78)] if row % 2 == 0 else [(-60, 38), (0, 78), (60, 38)]
         for x, width in bricks:
-            page.rectangle((900 + x, 624 - 48 * row), (width, 47))
+            page.rectangle((790 + x, 624 - 48 * row), (width, 47))
+    page.rectangle((1205, 577), (36, 140), anchored=True)
     page.arrow((1150, 60), (1150, 190))
 
 

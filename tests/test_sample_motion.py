@@ -170,8 +170,8 @@ def test_sign_two_pivots_hold_and_one_swings() -> None:
 
 
 def test_wrecker_the_wall_breaks() -> None:
-    weight, top = path("wrecker", 330, 300), path("wrecker", 900, 384)
-    assert np.max(weight[:, 0]) > 780
+    weight, top = path("wrecker", 262, 300), path("wrecker", 790, 384)
+    assert np.max(weight[:, 0]) > 670
     assert top[-1, 1] > top[0, 1] + 60
 
 
