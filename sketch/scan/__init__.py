@@ -12,6 +12,7 @@ from sketch.scan.binding import thin, trace
 from sketch.scan.decode import decode, is_picture
 from sketch.scan.graph import build_graph
 from sketch.scan.page import fill_pinholes, ink_mask, read_page
+from sketch.scan.ridge import centre_on_ink
 from sketch.scan.rings import find_rings, take_rings
 from sketch.scan.strokes import trace_strokes
 
@@ -19,7 +20,7 @@ __all__ = ["is_picture", "read_picture"]
 
 WORK_PIXELS = 2_500_000  # more than this are not looked at before the pen's width is known
 WIDEST_PEN = 6.0  # [pixels]: a wider pen is thinned at half the resolution
-SMOOTHING = 1.5  # [pixels]: standard deviation of the smoothing that takes the pixels' steps out of a chain
+SMOOTHING = 0.8  # [pixels]: standard deviation of the smoothing along a stroke
 
 
 def read_picture(data: bytes) -> Sketch:
@@ -62,6 +63,7 @@ def trace_picture(picture: NDArray[Any]) -> list[NDArray[np.float64]]:
     distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     graph = build_graph(trace(skeleton, count), distance, pen)
     rings = take_rings(graph, find_rings(mask, distance, pen), pen)
+    centre_on_ink(graph, page.darkness, pen)
     strokes = [smooth(s, SMOOTHING) for s in trace_strokes(graph, pen) + rings]
     return [(s + 0.5) * scale - 0.5 for s in strokes if len(s) > 1]
 
