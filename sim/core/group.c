@@ -256,6 +256,7 @@ static int send_off(Exact *e, int32_t root, double time) {
         Track *track = &e->track[body];
         State state = g->state[i];
         if (rest) state.v = vec(0, 0), state.spin = 0;
+        set_body_state(&e->world->body[body], &state); /* the crowd takes resting bodies for walls where they stand */
         track->motion = rest ? motion_at_rest(&state, time) : motion_in_flight(&state, time, e->world->gravity);
         track->island = index;
         e->changed[body] = true;

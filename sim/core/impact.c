@@ -152,9 +152,13 @@ static void complement(Problem *p) {
     }
 }
 
-/* Solve for the forces of all rows of the system, so that J M^-1 F' force + wanted obeys the contacts' laws. */
-static int solve(ContactSolver *solver, System *system, const bool *takes_part, const double *wanted, double *force) {
+/* Solve for the forces of all rows of the system, so that J M^-1 F' force + wanted obeys the contacts' laws; what is
+ * less than `nothing` is rounding. */
+static int solve(ContactSolver *solver, System *system, const bool *takes_part, double *wanted, double nothing,
+                 double *force) {
     Problem p;
+    for (int32_t i = 0; i < system->row_count; i++)
+        if (fabs(wanted[i]) < nothing) wanted[i] = 0;
     int status = lay_out(solver, &p, system, takes_part);
     if (status != SIM_OK) return status;
     reduce(&p, wanted);
@@ -223,7 +227,7 @@ static int exchange(ContactSolver *solver, System *s, Rounds *r, bool elastic, c
         double *u = &r->wanted[2 * (s->joint_count + k)];
         if (elastic && *u < -slack->speed) *u *= 1 + s->contact[k].elasticity;
     }
-    int status = solve(solver, s, r->takes_part, r->wanted, r->force);
+    int status = solve(solver, s, r->takes_part, r->wanted, 1e-6 * slack->speed, r->force);
     if (status != SIM_OK) return status;
     for (int32_t i = 0; i < s->row_count; i++)
         if (r->force[i] != 0) row_push(s, &s->row[i], r->force[i]);
@@ -347,7 +351,7 @@ int find_modes(ContactSolver *solver, System *s, const Slack *slack, double *acc
     for (int32_t i = 0; i < s->row_count; i++) r.wanted[i] = row_acceleration(&s->row[i], acceleration);
     for (int32_t k = 0; k < s->contact_count; k++)
         r.takes_part[k] = row_speed(contact_row(s, k), s->state) <= slack->speed;
-    status = solve(solver, s, r.takes_part, r.wanted, r.force);
+    status = solve(solver, s, r.takes_part, r.wanted, 1e-4 * slack->speed, r.force);
     if (status != SIM_OK) return status;
     accelerations(s, r.force, acceleration);
     double gravity = vlength(s->world->gravity), none = 1e-7 * (gravity > 0 ? gravity : 1);

@@ -6,7 +6,8 @@
 #include "touch.h"
 
 #define MAX_STEPS 4000
-#define PATIENCE 60 /* steps after which a search is not on its way to a root */
+#define PASSING 1e-5 /* first step for a point that passes by a side, or that a contact holds already [s] */
+#define PATIENCE 60  /* steps after which a search is not on its way to a root */
 
 /* ---------------------------------------------------------------- bounds */
 
@@ -68,6 +69,31 @@ static bool leads_away(const World *world, const Feature *f, const Placed *a, Ve
     return true;
 }
 
+/* Whether b's side is the one that a's point is at: a point a little inside an outline is behind more than one of its
+ * sides, and touches the one that it is least deep behind. */
+static bool is_nearest(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
+                       const Slack *slack) {
+    const Shape *shape = &world->shape[f->shape_b];
+    if (!f->is_side || g->gap >= 0) return true;
+    const Vec *v = &world->vertex[shape->first];
+    const Side *side = &world->side[shape->first];
+    Vec point = unplace(b->at, place(a->at, f->point_a));
+    int32_t n = shape->count, next = (f->index_b + 1) % n, before = (f->index_b + n - 1) % n;
+    for (int32_t k = 0; k < 2; k++) {
+        int32_t other = k ? next : before, corner = k ? next : f->index_b;
+        if (side[corner].reflex) continue;
+        Vec outward = vec(side[other].along.y, -side[other].along.x);
+        if (vdot(vsub(point, v[other]), outward) - f->radius_a > g->gap + slack->gap) return false;
+    }
+    return true;
+}
+
+/* Whether a feature whose gap has closed is a touch at all. */
+static bool faces(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
+                  const Slack *slack) {
+    return is_nearest(world, f, g, a, b, slack) && leads_away(world, f, a, g->normal, slack);
+}
+
 /* ---------------------------------------------------------------- the search */
 
 typedef struct Search {
@@ -82,6 +108,16 @@ typedef struct Search {
 static bool is_closed(const Search *s, const Feature *f) {
     for (int32_t k = 0; k < s->closed_count; k++)
         if (feature_same(s->closed[k], f)) return true;
+    return false;
+}
+
+/* Whether a closed contact is at this touch's point: corners that meet touch in more ways than one, and one holds them. */
+static bool is_held(const Search *s, const Gap *g, const Placed *pa, const Placed *pb) {
+    for (int32_t k = 0; k < s->closed_count; k++) {
+        bool a_first = s->closed[k]->body_a == s->a.body;
+        Gap held = feature_gap(s->closed[k], a_first ? pa : pb, a_first ? pb : pa);
+        if (vlength(vsub(held.point, g->point)) <= 8 * s->slack->gap) return true;
+    }
     return false;
 }
 
@@ -104,7 +140,7 @@ static double feature_step(const Slack *slack, const Gap *g, const PairBound *bo
 
 /* The safe step of all features of two shapes. */
 static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, const Placed *pa, const Placed *pb,
-                          const PairBound *bound, double step) {
+                          const PairBound *bound, double passing, double step) {
     int32_t ia = (int32_t)(sa - s->world->shape), ib = (int32_t)(sb - s->world->shape);
     Vec apart = vsub(place(pa->at, sa->centre), place(pb->at, sb->centre));
     double discs = vlength(apart) - sa->reach - sb->reach;
@@ -118,7 +154,9 @@ static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, con
         double steer =
             f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
         double own = feature_step(s->slack, &g, bound, steer);
-        if (own <= 0 && !leads_away(s->world, &f, a_first ? pa : pb, g.normal, s->slack)) own = 1e-5; /* passing by */
+        if (own <= 0 &&
+            (!faces(s->world, &f, &g, a_first ? pa : pb, a_first ? pb : pa, s->slack) || is_held(s, &g, pa, pb)))
+            own = passing;
         step = fmin(step, own);
     }
     return step;
@@ -136,7 +174,8 @@ static double search_shapes(const Search *s, const Shape *sa, const Shape *sb, d
             bound = pair_bound(s->a.motion, ra, s->b.motion, rb, vlength(vsub(state_a.p, state_b.p)), t, horizon);
             if (bound.closing == 0) return INFINITY;
         }
-        double step = shapes_step(s, sa, sb, &pa, &pb, &bound, horizon - t);
+        /* what passes by once mostly goes on to: longer steps, the longer it lasts */
+        double step = shapes_step(s, sa, sb, &pa, &pb, &bound, PASSING * (1 + steps), horizon - t);
         if (step <= 0) return t;
         if (steps > PATIENCE)
             step = fmax(step, 0.5 * s->slack->gap / bound.closing); /* creeping: half a slack at least */
@@ -200,7 +239,7 @@ int32_t touching_now(const World *world, int32_t body_a, const State *state_a, i
                 const Placed *point_of = a_first ? &pa : &pb;
                 t.gap = feature_gap(&t.feature, point_of, a_first ? &pb : &pa);
                 if (t.gap.gap > slack->gap || t.gap.gap < -slack->deep || t.gap.margin < -slack->gap) continue;
-                if (!leads_away(world, &t.feature, point_of, t.gap.normal, slack)) continue;
+                if (!faces(world, &t.feature, &t.gap, point_of, a_first ? &pb : &pa, slack)) continue;
                 if (count < capacity && !merge_same_point(out, count, &t, 8 * slack->gap)) out[count++] = t;
             }
         }
