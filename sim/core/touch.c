@@ -129,7 +129,7 @@ static double feature_step(const Slack *slack, const Gap *g, const PairBound *bo
     if (aside <= 0 && in_front && g->gap <= slack->root && g->rate < -slack->speed) return 0;
     if (aside <= 0 && in_front && g->gap < -slack->gap && g->rate < -1e-6 * slack->speed) return 0;
     double step;
-    if (g->gap > slack->root || (in_front && g->rate > slack->speed)) /* clear, or on its way out */
+    if (g->gap > slack->gap || (in_front && fabs(g->rate) > slack->speed)) /* clear, or on its way in or out */
         step = safe_step(fmax(g->gap, 0), g->rate, steer);
     else if (in_front) /* grazing: it matters again when it has gone in by the slack, or come free */
         step = fmax(safe_step(fmax(g->gap + 2 * slack->gap, slack->gap), 0, steer), 1e-9);
