@@ -22,7 +22,9 @@ int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, d
     e->acceleration = malloc(3 * n * sizeof *e->acceleration);
     e->root = malloc(n * sizeof *e->root);
     e->changed = calloc(n, sizeof *e->changed);
-    if (!e->track || !e->island || !e->motion || !e->acceleration || !e->root || !e->changed) return SIM_OUT_OF_MEMORY;
+    e->fresh = calloc(n, sizeof *e->fresh);
+    if (!e->track || !e->island || !e->motion || !e->acceleration || !e->root) return SIM_OUT_OF_MEMORY;
+    if (!e->changed || !e->fresh) return SIM_OUT_OF_MEMORY;
     int status = system_create(&e->group, world);
     if (status == SIM_OK) status = system_create(&e->part, world);
     if (status == SIM_OK) status = smooth_create(&e->smooth, world, tolerance, slack);
@@ -42,6 +44,7 @@ void exact_destroy(Exact *e) {
     free(e->acceleration);
     free(e->root);
     free(e->changed);
+    free(e->fresh);
     free(e->impulse);
     free(e->touching);
     free(e->closed);
@@ -205,26 +208,40 @@ static int handle_touch(Exact *e, int32_t body, double time, bool *crowded) {
     return status;
 }
 
-int exact_start(Exact *e, double time) {
+/* Look at the bodies that have just been given to the exact way: what touches, what rests, what moves how. */
+static int take_up(Exact *e, double time) {
     int32_t n = e->world->body_count;
     for (int32_t i = 1; i < n; i++) {
-        if (!is_tracked(e, i)) continue;
-        State state = body_state(&e->world->body[i]);
-        e->track[i] = (Track){.motion = motion_in_flight(&state, time, e->world->gravity),
-                              .island = -1,
-                              .touch_time = INFINITY,
-                              .bucket_time = time};
-        e->world->body[i].mode = MODE_SMOOTH; /* not looked at yet */
-    }
-    for (int32_t i = 1; i < n; i++) {
-        if (e->world->body[i].mode != MODE_SMOOTH || e->track[i].island >= 0) continue;
+        if (!e->fresh[i] || e->world->body[i].mode != MODE_SMOOTH) continue;
         system_clear(&e->group);
         int status = group_gather(e, i, time);
+        for (int32_t k = 0; k < e->group.count; k++) e->fresh[e->group.member[k]] = false;
         if (status == SIM_OK) status = group_reform(e, time);
         if (status != SIM_OK) return status;
     }
     find_touches(e, time);
     return SIM_OK;
+}
+
+static void adopt(Exact *e, int32_t body, double time) {
+    State state = body_state(&e->world->body[body]);
+    e->track[body] = (Track){.motion = motion_in_flight(&state, time, e->world->gravity),
+                             .island = -1,
+                             .touch_time = INFINITY,
+                             .bucket_time = time};
+    e->world->body[body].mode = MODE_SMOOTH;
+    e->fresh[body] = true;
+}
+
+int exact_start(Exact *e, double time) {
+    for (int32_t i = 1; i < e->world->body_count; i++) adopt(e, i, time);
+    return take_up(e, time);
+}
+
+int exact_take_back(Exact *e, double time) {
+    for (int32_t i = 1; i < e->world->body_count; i++)
+        if (!is_tracked(e, i)) adopt(e, i, time);
+    return take_up(e, time);
 }
 
 /* The next thing to happen: a body's touch, or an island's end of motion. */

@@ -56,16 +56,19 @@ typedef struct Exact {
     int32_t touching_capacity;
     const Feature **closed;
     int32_t closed_capacity;
-    PairList before, after; /* pairs in contact, before an event and after it */
-    bool *changed;
+    PairList before, after;   /* pairs in contact, before an event and after it */
+    bool *changed, *fresh;    /* bodies whose touches, or everything, have to be looked at again */
     double spent, spent_time; /* pairs looked at lately, for the budget */
 } Exact;
 
 int exact_create(Exact *exact, World *world, Recorder *recorder, double tolerance, double end);
 void exact_destroy(Exact *exact);
 
-/* Take the bodies of the given mode that are not tracked yet into account from `time` on. */
+/* Take up all bodies at the start. */
 int exact_start(Exact *exact, double time);
+
+/* Take up the bodies of the crowd again: overlaps that it left are held and let out. */
+int exact_take_back(Exact *exact, double time);
 
 /* Run to `until`, or to an earlier time at which bodies went to the crowd; *reached says which. */
 int exact_run(Exact *exact, double from, double until, double *reached);

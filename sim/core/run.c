@@ -63,10 +63,13 @@ void sim_events(const Sim *sim, SimEvent *out) {
 
 /* ---------------------------------------------------------------- the crowd beside the rest */
 
-static bool has_crowd(const World *world) {
-    for (int32_t i = 1; i < world->body_count; i++)
-        if (world->body[i].mode == MODE_CROWD) return true;
-    return false;
+#define FEW 16         /* bodies of a crowd that the exact way is asked for again */
+#define FIRST_WAIT 0.1 /* before it is asked again [s]; doubled each time */
+
+static int32_t crowd_size(const World *world) {
+    int32_t count = 0;
+    for (int32_t i = 1; i < world->body_count; i++) count += world->body[i].mode == MODE_CROWD;
+    return count;
 }
 
 /* Bodies that come near the crowd within a step belong to it. */
@@ -113,23 +116,36 @@ static double step_end(const SimOptions *options, double time) {
     return (floor(time * rate * (1 + 1e-12) + 1e-6) + 1) / rate;
 }
 
-static int advance(Sim *sim, const SimOptions *options, double end) {
+/* One step of the crowd, with what is beside it. */
+static int advance_crowd(Sim *sim, const SimOptions *options, double end, double *time) {
     World *world = &sim->world;
-    double time = 0, reached;
+    double next = fmin(step_end(options, *time), end), reached;
+    int status = absorb(sim, *time, next);
+    for (int32_t i = 1; i < world->body_count; i++) sim->entering[i] = world->body[i].mode != MODE_CROWD;
+    if (status == SIM_OK) status = exact_run(&sim->exact, *time, next, &reached);
+    if (status != SIM_OK) return status;
+    for (int32_t i = 1; i < world->body_count; i++)
+        sim->entering[i] = sim->entering[i] && world->body[i].mode == MODE_CROWD;
+    if (reached > *time) status = step_crowd(sim, *time, reached, options->tolerance);
+    *time = reached;
+    return status;
+}
+
+static int advance(Sim *sim, const SimOptions *options, double end) {
+    double time = 0, wait = FIRST_WAIT, again = INFINITY;
     int status = exact_start(&sim->exact, 0);
     while (status == SIM_OK && time < end) {
-        if (!has_crowd(world)) {
+        int32_t crowd = crowd_size(&sim->world);
+        if (crowd == 0) {
             status = exact_run(&sim->exact, time, end, &time);
-            continue;
+            again = time + wait;
+        } else if (crowd <= FEW && time >= again) {
+            status = exact_take_back(&sim->exact, time);
+            wait *= 2;
+            again = time + wait;
+        } else {
+            status = advance_crowd(sim, options, end, &time);
         }
-        double next = fmin(step_end(options, time), end);
-        status = absorb(sim, time, next);
-        for (int32_t i = 1; i < world->body_count; i++) sim->entering[i] = world->body[i].mode != MODE_CROWD;
-        if (status == SIM_OK) status = exact_run(&sim->exact, time, next, &reached);
-        for (int32_t i = 1; i < world->body_count; i++)
-            sim->entering[i] = sim->entering[i] && world->body[i].mode == MODE_CROWD;
-        if (status == SIM_OK && reached > time) status = step_crowd(sim, time, reached, options->tolerance);
-        time = reached;
     }
     return status == SIM_OK ? exact_finish(&sim->exact) : status;
 }
