@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Chains", "thin", "trace"]
+__all__ = ["Chains", "pieces", "thin", "trace"]
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _MASK = np.ctypeslib.ndpointer(np.uint8, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
@@ -28,6 +28,8 @@ def _library() -> ctypes.CDLL:
     library.ink_thin.restype = int32
     library.ink_trace.argtypes = [_MASK, int32, int32, int32, *[_INTS] * 6]
     library.ink_trace.restype = int32
+    library.ink_pieces.argtypes = [_MASK, int32, int32, _INTS, _INTS]
+    library.ink_pieces.restype = int32
     return library
 
 
@@ -86,3 +88,17 @@ def trace(skeleton: NDArray[np.uint8], count: int) -> Chains:
         [(int(a), int(b)) for a, b in ends[: 2 * chain_count].reshape(-1, 2)],
         nodes,
     )
+
+
+def pieces(mask: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The connected pieces of a mask: the indices of all ink pixels, piece after piece, and each one's start.
+
+    The outermost rows and columns count as paper.
+    """
+    height, width = mask.shape
+    count = int(np.count_nonzero(mask))
+    pixels, start = np.zeros(max(count, 1), np.int32), np.zeros(count + 1, np.int32)
+    found = int(_library().ink_pieces(mask, width, height, pixels, start))
+    if found < 0:
+        raise MemoryError("no memory for the pieces of the ink")
+    return pixels[: start[found]], start[:found]

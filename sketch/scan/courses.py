@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import End, Graph
+from sketch.scan.graph import RING, End, Graph
 
 __all__ = ["Course", "Links", "follow", "length"]
 
@@ -53,7 +53,7 @@ def follow(graph: Graph, links: Links, inner: set[int]) -> list[Course]:
             course.via.append(via)
         else:
             course.closed = True
-        if graph.edges[begin[0]].ends == (-2, -2):
+        if graph.edges[begin[0]].ends == RING:
             course.closed = True
         courses.append(course)
     return courses

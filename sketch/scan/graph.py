@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import Chains
 
-__all__ = ["SIGHT", "Edge", "End", "Graph", "bend", "build_graph", "heading"]
+__all__ = ["RING", "SIGHT", "Edge", "End", "Graph", "bend", "build_graph", "heading"]
 
 Points = NDArray[np.float64]
+RING = (-2, -2)  # the ends of an edge that closes on itself
 SIGHT = 4.0  # pen widths along a branch that show where it is going
 OVERSHOOT = 2.5  # pen widths that a line may go on past its corner
 End = tuple[int, int]  # an edge and which of its ends
@@ -67,7 +68,7 @@ def build_graph(chains: Chains, distance: NDArray[Any], pen: float) -> Graph:
     for points, ends in zip(chains.chains, chains.ends, strict=True):
         head = [chains.nodes[ends[0]]] if ends[0] >= 0 else []
         tail = [chains.nodes[ends[1]]] if ends[1] >= 0 else []
-        closed = [points[0]] if ends[0] == -2 else []
+        closed = [points[0]] if ends == RING else []
         graph.edges.append(Edge(np.array([*head, *points, *tail, *closed]), ends))
     _drop_twigs(graph)
     _drop_overshoots(graph, pen)
@@ -187,7 +188,7 @@ def _join_passed_nodes(graph: Graph, corners: dict[int, Points]) -> None:
             before = _cut_back(before, corners[node], far)
             after = _cut_back(after[::-1], corners[node], far)[::-1]
         if e == f:
-            first.points, first.ends = before, (-2, -2)
+            first.points, first.ends = before, RING
             if node in corners:
                 inner = _cut_back(before[::-1], corners[node], far)
                 first.points = np.concatenate([inner, inner[:1]])

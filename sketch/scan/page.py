@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Page", "fill_pinholes", "ink_mask", "read_page"]
+from sketch.scan.binding import pieces
+
+__all__ = ["Page", "fill_pinholes", "holes", "ink_mask", "read_page"]
 
 Image = NDArray[Any]  # uint8
 
@@ -136,30 +138,40 @@ def ink_mask(page: Page, reach: int) -> Image:
     half = cv2.dilate(page.darkness, kernel) // 2
     floor = np.uint8(min(max(LEAST_CONTRAST, 5 * page.noise), 254))
     mask = np.asarray(page.darkness > np.maximum(half, floor), np.uint8)
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
-    if count == 1:
-        return mask
-    inked = np.flatnonzero(mask)
-    total = np.bincount(labels.ravel()[inked], page.darkness.ravel()[inked], minlength=count)
-    area = stats[:, cv2.CC_STAT_AREA]
-    strength = total / area
-    span = np.hypot(stats[:, cv2.CC_STAT_WIDTH], stats[:, cv2.CC_STAT_HEIGHT])
+    pixels, start = pieces(mask)
+    if not len(start):
+        return np.zeros_like(mask)
+    y, x = np.divmod(pixels, mask.shape[1])
+    area = np.diff(np.append(start, len(pixels)))
+    strength = np.add.reduceat(page.darkness.ravel()[pixels].astype(np.float64), start) / area
+    span = np.hypot(*(np.maximum.reduceat(v, start) - np.minimum.reduceat(v, start) for v in (x, y)))
     notable = span >= NOTABLE * (mask.shape[0] * mask.shape[1]) ** 0.5
-    notable[0] = False
-    full = strength[notable].max() if notable.any() else strength[1:].max()
+    full = strength[notable].max() if notable.any() else strength.max()
     keep = (strength >= FAINT * full) & (span >= 2 * reach)
-    keep[0] = False
-    return np.asarray(keep.astype(np.uint8)[labels])
+    kept = np.zeros_like(mask)
+    kept.ravel()[pixels[np.repeat(keep, area)]] = 1
+    return kept
+
+
+def holes(mask: Image) -> list[tuple[NDArray[np.int32], int]]:
+    """The holes in the ink: the way around each on the ink, shape (n, 1, 2), and its area [pixels]."""
+    import cv2
+
+    ways, nesting = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    if nesting is None:
+        return []
+    # Pick's theorem: the area of the polygon is the pixels inside and half of those on it, less one
+    return [
+        (np.asarray(way, np.int32), round(cv2.contourArea(way) - len(way) / 2 + 1))
+        for way, (_, _, _, parent) in zip(ways, nesting[0], strict=True)
+        if parent >= 0
+    ]
 
 
 def fill_pinholes(mask: Image, pen: float) -> bool:
     """Fill the holes, in place, that are too small for a pen `pen` pixels wide to have gone around them."""
     import cv2
 
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(1 - mask, connectivity=4)
-    tiny = stats[:, cv2.CC_STAT_AREA] < PINHOLE * pen * pen
-    tiny[0] = False  # the ink itself
-    if not tiny.any():
-        return False
-    mask |= tiny.astype(np.uint8)[labels]
-    return True
+    tiny = [way for way, area in holes(mask) if area < PINHOLE * pen * pen]
+    cv2.drawContours(mask, tiny, -1, 1, cv2.FILLED)
+    return bool(tiny)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import Graph
+from sketch.scan.graph import RING, Graph
 
 __all__ = ["centre_on_ink"]
 
@@ -43,6 +43,8 @@ def centre_on_ink(graph: Graph, darkness: NDArray[Any], pen: float) -> None:
         count = len(edge.points)
         edge.points = points[start : start + count]
         start += count
+        if edge.ends == RING:
+            edge.points[-1] = edge.points[0]
 
 
 def _normals(points: Points) -> Points:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.graph import Edge, Graph
+from sketch.scan.page import holes
 
 __all__ = ["find_rings", "take_rings"]
 
@@ -45,20 +46,23 @@ def _seeds(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[tuple
     """Where rings may be: middle and radius of small holes, alone and with the holes beside them."""
     import cv2
 
-    _, labels, stats, centres = cv2.connectedComponentsWithStats(1 - mask, connectivity=4)
-    small = stats[:, cv2.CC_STAT_AREA] < np.pi * (LARGEST * pen) ** 2
-    seeds = [
-        (x, y, np.sqrt(area / np.pi) + pen / 2)
-        for (x, y), area in zip(centres[small], stats[small, cv2.CC_STAT_AREA], strict=True)
-    ]
+    largest = np.pi * (LARGEST * pen) ** 2
+    small = [(way, area) for way, area in holes(mask) if area < largest]
+    seeds = [_middle_and_radius(way, np.sqrt(max(area, 1) / np.pi) + pen / 2) for way, area in small]
     # ink much wider than a line is a hole that closed, wholly or in part
-    inside = _grown((small.astype(np.uint8)[labels] & (1 - mask)), pen / 2)
+    inside = np.zeros_like(mask)
+    cv2.drawContours(inside, [way for way, _ in small], -1, 1, cv2.FILLED)
     inside |= _grown((distance > 0.75 * pen).astype(np.uint8), pen / 4)
-    _, _, stats, centres = cv2.connectedComponentsWithStats(inside, connectivity=8)
-    for (x, y), box in zip(centres[1:], stats[1:], strict=True):
-        seeds.append((x, y, np.sqrt(box[cv2.CC_STAT_AREA] / np.pi)))
-        seeds.append((x, y, max(box[cv2.CC_STAT_WIDTH], box[cv2.CC_STAT_HEIGHT]) / 2))
+    for way in cv2.findContours(inside, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]:
+        box = cv2.boundingRect(way)
+        seeds.append(_middle_and_radius(way, np.sqrt((cv2.contourArea(way) + len(way)) / np.pi)))
+        seeds.append(_middle_and_radius(way, max(box[2:]) / 2))
     return [seed for seed in seeds if SMALLEST * pen / 2 <= seed[2] <= LARGEST * pen]
+
+
+def _middle_and_radius(way: NDArray[Any], radius: float) -> tuple[float, float, float]:
+    x, y = way[:, 0].mean(axis=0)
+    return float(x), float(y), float(radius)
 
 
 def _grown(region: NDArray[Any], by: float) -> NDArray[Any]:
@@ -120,7 +124,11 @@ def _runs(
     ink = _at(mask, middle + rays[:, None, :] * reach[None, :, None]).astype(float)
     width = max(int(pen), 1)  # half-pixel steps over half a pen to either side
     window = np.hanning(2 * width + 3)[1:-1]
-    filled = np.apply_along_axis(np.convolve, 1, ink, window / window.sum(), "same")
+    window /= window.sum()
+    filled = np.lib.stride_tricks.sliding_window_view(
+        np.pad(ink, ((0, 0), (width, width))), len(window), axis=1
+    )
+    filled = filled @ window
     value = filled - 0.15 * ((reach - radius) / pen) ** 2
     best = value.argmax(axis=1)
     met = filled[np.arange(len(rays)), best] > 0.6

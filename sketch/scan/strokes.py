@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.courses import Course, Links, follow, length
-from sketch.scan.graph import End, Graph
+from sketch.scan.graph import RING, End, Graph
 from sketch.scan.junctions import Branch, Junction, find_junctions
 from sketch.scan.outlines import close_outlines
 
@@ -119,7 +119,7 @@ def _points(graph: Graph, course: Course, branch_of: dict[End, Branch], links: L
             pieces.append(course.via[k])
     if course.borrowed is not None:
         pieces.append(course.borrowed)
-    if (course.closed or course.borrowed is not None) and graph.edges[course.steps[0][0]].ends != (-2, -2):
+    if (course.closed or course.borrowed is not None) and graph.edges[course.steps[0][0]].ends != RING:
         pieces.append(pieces[0][:1])
     return np.concatenate(pieces)
 
