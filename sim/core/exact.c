@@ -240,6 +240,11 @@ int exact_start(Exact *e, double time) {
 
 int exact_take_back(Exact *e, double time) {
     for (int32_t i = 1; i < e->world->body_count; i++)
+        for (int32_t j = 0; j < e->world->body_count && !is_tracked(e, i); j++)
+            if (j != i && (j == 0 || !is_tracked(e, j) || e->world->body[j].mode == MODE_REST) &&
+                too_deep(e->world, i, j, &e->slack))
+                return SIM_OK; /* not yet */
+    for (int32_t i = 1; i < e->world->body_count; i++)
         if (!is_tracked(e, i)) adopt(e, i, time);
     return take_up(e, time);
 }

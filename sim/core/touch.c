@@ -245,3 +245,48 @@ int32_t touching_now(const World *world, int32_t body_a, const State *state_a, i
         }
     return count;
 }
+
+/* ---------------------------------------------------------------- too deep */
+
+/* How deep a disk about a point of the shape's frame is in a polygon; negative outside. */
+static double depth_in(const World *world, const Shape *shape, Vec point, double radius) {
+    const Vec *v = &world->vertex[shape->first];
+    const Side *side = &world->side[shape->first];
+    bool inside = false;
+    double nearest = INFINITY;
+    for (int32_t i = 0; i < shape->count; i++) {
+        Vec a = v[i], b = v[(i + 1) % shape->count], to = vsub(point, a);
+        double foot = fmin(fmax(vdot(to, side[i].along), 0), side[i].length);
+        nearest = fmin(nearest, vlength(vsub(to, vscale(side[i].along, foot))));
+        if ((a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) * (b.x - a.x) / (b.y - a.y))
+            inside = !inside;
+    }
+    return inside ? nearest + radius : radius - nearest;
+}
+
+/* How deep the corners, or the circle, of a are in b. */
+static double corners_depth(const World *world, const Shape *a, Pose at_a, const Shape *b, Pose at_b) {
+    double deepest = -INFINITY;
+    for (int32_t i = 0; i < a->count; i++) {
+        Vec point = unplace(at_b, place(at_a, world->vertex[a->first + i]));
+        double depth = b->count > 1 ? depth_in(world, b, point, a->radius)
+                                    : a->radius + b->radius - vlength(vsub(point, world->vertex[b->first]));
+        deepest = fmax(deepest, depth);
+    }
+    return deepest;
+}
+
+bool too_deep(const World *world, int32_t body_a, int32_t body_b, const Slack *slack) {
+    const Body *a = &world->body[body_a], *b = &world->body[body_b];
+    Pose at_a = body_pose(a), at_b = body_pose(b);
+    for (int32_t i = a->first_shape; i < a->first_shape + a->shape_count; i++)
+        for (int32_t j = b->first_shape; j < b->first_shape + b->shape_count; j++) {
+            const Shape *sa = &world->shape[i], *sb = &world->shape[j];
+            Vec apart = vsub(place(at_a, sa->centre), place(at_b, sb->centre));
+            if (vlength(apart) > sa->reach + sb->reach || !world_collides(world, i, j)) continue;
+            if (fmax(corners_depth(world, sa, at_a, sb, at_b), corners_depth(world, sb, at_b, sa, at_a)) >
+                0.9 * slack->deep)
+                return true;
+        }
+    return false;
+}
