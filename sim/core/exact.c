@@ -6,6 +6,7 @@
 #define BUCKET_LIMIT 400.0  /* events of one body that may come in a burst */
 #define BUCKET_LEAK 200.0   /* and a second in the long run */
 #define MOST_REPEATS 30     /* events of one body at one moment */
+#define JAMMED 1000.0      /* times the slack: a speed against constraints that says they contradict each other */
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
 #define PAIRS_OF_FEW 1e6    /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
@@ -143,15 +144,19 @@ int island_advance(Exact *e, int32_t index, double from) {
     double start = seconds_now();
     int status = load_part(e, island, from);
     if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
-    if (status == SIM_OK) status = smooth_project(&e->smooth, &e->part);
+    double left = 0;
+    if (status == SIM_OK) status = smooth_project(&e->smooth, &e->part, &left);
+    island->jammed = left > JAMMED * e->slack.speed;
     if (status == SIM_OK)
         status = smooth_step(&e->smooth, &e->part, from, fmax(e->end, from + 1e-9), &island->step, e->motion,
                              &island->ended);
+    island->ended = island->ended || island->jammed;
     for (int32_t k = 0; k < island->contact_count; k++) island->contact[k] = e->part.contact[k];
     for (int32_t k = 0; k < island->member_count; k++) {
         Track *track = &e->track[island->member[k]];
         record_motion(e->recorder, island->member[k], &track->motion, from);
         track->motion = e->motion[k];
+        if (island->jammed) track->motion.end = from;
         e->changed[island->member[k]] = true;
     }
     e->world->profile.smooth_steps += 1;
@@ -278,6 +283,10 @@ int exact_run(Exact *e, double from, double until, double *reached) {
         *reached = time;
         if (island >= 0 && !e->island[island].ended) {
             status = island_advance(e, island, time);
+        } else if (island >= 0 && e->island[island].jammed) {
+            e->world->profile.budget_spent += 1;
+            status = exact_hand_over(e, e->island[island].member[0], time);
+            crowded = true;
         } else if (island >= 0) {
             int32_t member = e->island[island].member[0];
             e->track[member].partner = 0;

@@ -17,6 +17,7 @@ typedef struct Island {
     Contact *contact;
     double step; /* length to try next [s] */
     bool ended;  /* the modes of its contacts end with its present motion */
+    bool jammed;  /* its constraints cannot be met: it goes to the crowd */
     bool in_use;
 } Island;
 

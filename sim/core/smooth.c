@@ -288,10 +288,14 @@ static int project_velocities(Smooth *s, System *system) {
     return SIM_OK;
 }
 
-int smooth_project(Smooth *s, System *system) {
+int smooth_project(Smooth *s, System *system, double *left) {
+    *left = 0;
     if (s->active_count == 0) return SIM_OK;
     int status = project_positions(s, system);
-    return status == SIM_OK ? project_velocities(s, system) : status;
+    if (status == SIM_OK) status = project_velocities(s, system);
+    for (int32_t i = 0; i < s->active_count; i++)
+        *left = fmax(*left, fabs(row_speed(&system->row[s->active[i]], system->state)));
+    return status;
 }
 
 /* ---------------------------------------------------------------- the step */

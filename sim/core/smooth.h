@@ -23,8 +23,9 @@ void smooth_destroy(Smooth *smooth);
 /* Choose the rows that hold from the contacts' modes, and an order in which eliminating them fills little. */
 int smooth_prepare(Smooth *smooth, System *system);
 
-/* Take the states onto the constraints: positions, then velocities. */
-int smooth_project(Smooth *smooth, System *system);
+/* Take the states onto the constraints: positions, then velocities.  *left becomes the largest speed against a row that
+ * is left over: nearly contradictory rows, as of a jammed wedge, cannot all be met. */
+int smooth_project(Smooth *smooth, System *system, double *left);
 
 /* One step from the system's states at time `from`, no farther than `limit`, by a length near *h; *h becomes the length to
  * try next.  motion[i] is filled for every member and ends where the step does, or at the first moment at which a contact's
