@@ -19,7 +19,8 @@ from sketch.scan.strokes import trace_strokes
 __all__ = ["is_picture", "read_picture"]
 
 WORK_PIXELS = 2_500_000  # more than this are not looked at before the pen's width is known
-WIDEST_PEN = 6.0  # [pixels]: a wider pen is thinned at half the resolution
+NARROWEST_PEN = 3.0  # [pixels]: a thinner pen is thinned at twice the resolution, where there is more
+WIDEST_PEN = 6.4  # [pixels]: a wider pen is thinned at half the resolution
 SMOOTHING = 0.8  # [pixels]: standard deviation of the smoothing along a stroke
 
 
@@ -43,10 +44,11 @@ def trace_picture(picture: NDArray[Any]) -> list[NDArray[np.float64]]:
     scale = 1.0
     work = picture
     while work.shape[0] * work.shape[1] > WORK_PIXELS:
-        work = cv2.resize(picture, None, fx=0.5 / scale, fy=0.5 / scale, interpolation=cv2.INTER_AREA)
         scale *= 2
+        work = _reduced(picture, scale)
     if min(work.shape[:2]) < 8:
         return []
+    tried = {scale}
     while True:
         page = read_page(work)
         mask = ink_mask(page, 4)
@@ -54,10 +56,12 @@ def trace_picture(picture: NDArray[Any]) -> list[NDArray[np.float64]]:
         if count == 0:
             return []
         pen = float(np.count_nonzero(mask)) / count
-        if pen <= WIDEST_PEN or min(work.shape[:2]) < 200:
+        better = scale * 2 if pen > WIDEST_PEN else scale / 2 if pen < NARROWEST_PEN else scale
+        if better in tried or better < 1 or min(picture.shape[:2]) < 100 * better:
             break
-        work = cv2.resize(work, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
-        scale *= 2
+        scale = better
+        tried.add(scale)
+        work = _reduced(picture, scale)
     if fill_pinholes(mask, pen):
         skeleton, count = thin(mask)
     distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
@@ -66,6 +70,15 @@ def trace_picture(picture: NDArray[Any]) -> list[NDArray[np.float64]]:
     centre_on_ink(graph, page.darkness, pen)
     strokes = [smooth(s, SMOOTHING) for s in trace_strokes(graph, pen) + rings]
     return [(s + 0.5) * scale - 0.5 for s in strokes if len(s) > 1]
+
+
+def _reduced(picture: NDArray[Any], scale: float) -> NDArray[Any]:
+    import cv2
+
+    if scale == 1:
+        return picture
+    way = cv2.INTER_AREA if scale > 1 else cv2.INTER_LINEAR
+    return np.asarray(cv2.resize(picture, None, fx=1 / scale, fy=1 / scale, interpolation=way))
 
 
 def smooth(points: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
