@@ -313,6 +313,10 @@ int group_reform(Exact *e, double time) {
     status = settle_low_bounces(e, time);
     if (status == SIM_OK) status = resolve(e, time);
     if (status == SIM_OK) status = find_modes(&e->solver, g, &e->slack, e->acceleration);
+    if (status == SIM_BAD_INPUT) {
+        status = resolve_shock(&e->solver, g, &e->slack);
+        if (status == SIM_OK) status = find_modes(&e->solver, g, &e->slack, e->acceleration);
+    }
     e->world->profile.impact_time += seconds_now() - start;
     if (status == SIM_BAD_INPUT) { /* contacts that admit no rigid motion: the crowd's soft ones do */
         group_send_to_crowd(e, time);

@@ -28,12 +28,12 @@ void contact_solver_destroy(ContactSolver *solver) {
 typedef struct Problem {
     System *system;
     int32_t joints, contacts, unknowns; /* rows of joints; contacts that take part; the LCP's size */
-    int32_t width;                      /* of the reduced matrix: joints + 2 contacts + 1 */
-    int32_t *contact;                   /* those that take part */
-    int32_t *at;                        /* where each one's unknowns start */
-    bool *sticks;                       /* whether each one has unknowns for friction */
-    bool *pivoted;                      /* joint rows that the elimination used */
-    double *reduced;                    /* rows of joints, then two a contact; the last column is the wanted change */
+    int32_t width; /* of the reduced matrix: joints + 2 contacts + 1 */
+    int32_t *contact; /* those that take part */
+    int32_t *at; /* where each one's unknowns start */
+    bool *sticks; /* whether each one has unknowns for friction */
+    bool *pivoted; /* joint rows that the elimination used */
+    double *reduced; /* rows of joints, then two a contact; the last column is the wanted change */
     double *M, *q, *z, *work, *scale;
     int32_t *basis;
 } Problem;
@@ -300,6 +300,24 @@ int resolve_impacts(ContactSolver *solver, System *s, const Slack *slack, Vec *i
         }
         *count += 1;
     }
+    return status;
+}
+
+int resolve_shock(ContactSolver *solver, System *s, const Slack *slack) {
+    Rounds r;
+    for (int32_t k = 0; k < s->contact_count; k++) s->contact[k].slide = 0;
+    int status = system_place(s);
+    if (status == SIM_OK) status = reserve_rounds(solver, s, &r);
+    if (status != SIM_OK) return status;
+    for (int32_t i = 0; i < s->row_count; i++) r.wanted[i] = row_speed(&s->row[i], s->state);
+    for (int32_t k = 0; k < s->contact_count; k++) {
+        double *u = &r.wanted[2 * (s->joint_count + k)];
+        r.takes_part[k] = true;
+        if (*u <= slack->speed) *u = fmin(*u, 0) - slack->speed;
+    }
+    status = solve(solver, s, r.takes_part, r.wanted, 0, r.force);
+    for (int32_t i = 0; i < s->row_count && status == SIM_OK; i++)
+        if (r.force[i] != 0) row_push(s, &s->row[i], r.force[i]);
     return status;
 }
 

@@ -21,9 +21,13 @@ void contact_solver_destroy(ContactSolver *solver);
  * tangent; *count says how many impacts there were.  SIM_BAD_INPUT when the contacts admit no solution. */
 int resolve_impacts(ContactSolver *solver, System *system, const Slack *slack, Vec *impulse, int32_t *count);
 
+/* Where sliding contacts admit no forces (Painleve's paradox), the slightest approach brings an impulse that ends the
+ * sliding (Brogliato, Nonsmooth Mechanics, section 5.5: impact without collision). Give that impulse. */
+int resolve_shock(ContactSolver *solver, System *system, const Slack *slack);
+
 /* Decide how each contact goes on from here, when nothing approaches: `active`, `slide` and the forces are set, and
  * acceleration (3 a member) is what follows.  Contacts that part or slip are told by their velocities, those at rest
- * by the forces.  SIM_BAD_INPUT when there is no solution (Painleve's paradox). */
+ * by the forces.  SIM_BAD_INPUT when there is no solution. */
 int find_modes(ContactSolver *solver, System *system, const Slack *slack, double *acceleration);
 
 #endif
