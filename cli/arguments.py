@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
-__all__ = ["Parser", "UsageError", "number", "picture_size", "vector"]
+__all__ = ["Parser", "UsageError", "number", "picture_size", "vector", "whole_number"]
 
 MAX_SIDE = 7680  # 8K; beyond it players and H.264 levels give up
 
@@ -55,6 +55,17 @@ def number(above: float, at_most: float) -> Callable[[str], float]:
         if value > at_most:
             raise argparse.ArgumentTypeError(f"{text} is more than {at_most:g}")
         return value
+
+    return parse
+
+
+def whole_number(least: int, most: int) -> Callable[[str], int]:
+    """A type of argument: an integer from `least` to `most`."""
+
+    def parse(text: str) -> int:
+        if not re.fullmatch(r"\d{1,9}", text) or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {most}")
+        return int(text)
 
     return parse
 

@@ -15,7 +15,7 @@ from sim.scene import InputError, Scene
 if TYPE_CHECKING:
     from sketch.recognize import Recognition
 
-__all__ = ["Loaded", "load", "naming", "read", "recognize_bytes"]
+__all__ = ["Loaded", "load", "load_bytes", "naming", "read", "recognize_bytes"]
 
 STDIN = "-"
 MAX_BYTES = 64 << 20  # of any input: a photo of 12 megapixels has 2 to 15 MB
@@ -52,7 +52,11 @@ def _check_size(data: bytes, source: str) -> bytes:
 
 def load(source: str, scale: float | None = None) -> Loaded:
     """The scene that `source` holds or shows; `scale` is the ink's pixels per metre."""
-    data = read(source)
+    return load_bytes(read(source), source, scale)
+
+
+def load_bytes(data: bytes, source: str, scale: float | None = None) -> Loaded:
+    """The scene that an input's bytes hold or show."""
     if is_scene(data):
         if scale is not None:
             raise UsageError(

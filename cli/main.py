@@ -11,7 +11,8 @@ from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from cli.arguments import Parser, UsageError
-from cli.commands import bench, recognize, simulate
+from cli.commands import batch, bench, completion, doctor, recognize, simulate
+from cli.progress import error
 
 __all__ = ["main"]
 
@@ -32,7 +33,7 @@ def build_parser() -> Parser:
     parser = Parser(prog="sketchsim", description="Draw a machine, watch it run.", epilog=EPILOG)
     parser.add_argument("--version", action=_PrintVersion)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (recognize, simulate, bench):
+    for command in (recognize, simulate, batch, bench, doctor, completion):
         command.add_to(commands)
     return parser
 
@@ -63,9 +64,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _report(status: int, problem: str, hint: str = "") -> int:
-    print(f"error: {problem}", file=sys.stderr)
-    if hint:
-        print(f"hint: {hint}", file=sys.stderr)
+    error(problem, hint)
     return status
 
 

@@ -6,12 +6,19 @@ import shutil
 import sys
 import time
 
-__all__ = ["Progress", "note"]
+__all__ = ["Progress", "error", "note"]
 
 
 def note(text: str) -> None:
     """A line about something that the person may want to know."""
     print(f"note: {text}", file=sys.stderr)
+
+
+def error(problem: str, hint: str = "") -> None:
+    """A line about what is wrong, and one about what to do."""
+    print(f"error: {problem}", file=sys.stderr)
+    if hint:
+        print(f"hint: {hint}", file=sys.stderr)
 
 
 class Progress:
@@ -49,9 +56,13 @@ class Progress:
         sys.stderr.flush()
         self._width = len(line)
 
+    def clear(self) -> None:
+        """Take the line away, so that another can be written."""
+        if self._on and self._width:
+            self._show("")
+
     def __enter__(self) -> Progress:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._on and self._width:
-            self._show("")
+        self.clear()

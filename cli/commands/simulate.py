@@ -6,6 +6,7 @@ import argparse
 import dataclasses
 import math
 import time
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,11 +16,12 @@ from cli.outputs import STDOUT, Outputs, check_outputs
 from cli.results import ENDINGS, Look, Run
 
 if TYPE_CHECKING:
+    from cli.inputs import Loaded
     from cli.progress import Progress
     from sim.scene import Scene
     from sim.trajectory import Trajectory
 
-__all__ = ["add_run_options", "add_to", "run_of"]
+__all__ = ["add_run_options", "add_to", "check_samples", "motion_of", "run_of", "until_rest"]
 
 MAX_SAMPLES = 1_000_000  # of the motion; a day at 10 fps
 GRAVITY = 9.81  # [m/s²]
@@ -138,24 +140,34 @@ def _simulate(source: str, targets: list[str], options: argparse.Namespace) -> N
             _tell_what_left(result.lost(), tell)
 
 
-def run_of(source: str, options: argparse.Namespace, tell: Any, progress: Progress | None = None) -> Run:
+def run_of(
+    source: str, options: argparse.Namespace, tell: Callable[[str], object], progress: Progress
+) -> Run:
     """Read an input and simulate it; `tell` is given the notes."""
     from cli.inputs import load
+
+    progress.say("reading")
+    loaded = load(source, options.scale)
+    look = _look(options, loaded.scene)
+    progress.say("simulating")
+    motion = motion_of(loaded, options, tell)
+    if look.style == "ink" and loaded.recognition is None:
+        tell("a scene has no ink to move: bodies are drawn plain")
+    title = Path(source).stem if source != STDOUT else "sketch"
+    return Run(title, loaded.scene, motion, options.fps, look, loaded.recognition)
+
+
+def motion_of(loaded: Loaded, options: argparse.Namespace, tell: Callable[[str], object]) -> Trajectory:
+    """Run what was loaded by the options of add_run_options."""
     from sim import simulate
 
-    if progress is not None:
-        progress.say("reading")
-    loaded = load(source, options.scale)
     scene = loaded.scene
     if options.gravity is not None:
         scene.gravity = options.gravity
     for text in scene.notes:
         if options.gravity is None or "gravity" not in text:
             tell(text)
-    look = _look(options, scene)
-    if progress is not None:
-        progress.say("simulating")
-    motion = simulate(
+    motion: Trajectory = simulate(
         scene,
         duration=options.duration,
         fps=options.fps,
@@ -167,15 +179,10 @@ def run_of(source: str, options: argparse.Namespace, tell: Any, progress: Progre
         motion, rested = until_rest(motion, options.fps)
         if not rested:
             tell(f"still moving after {options.duration:g} s")
-    if look.style == "ink" and loaded.recognition is None:
-        tell("a scene has no ink to move: bodies are drawn plain")
-    title = Path(source).stem if source != STDOUT else "sketch"
-    return Run(title, scene, motion, options.fps, look, loaded.recognition)
+    return motion
 
 
 def _look(options: argparse.Namespace, scene: Scene) -> Look:
-    if not hasattr(options, "style"):
-        return Look()
     if options.camera is not None and options.camera not in {body.id for body in scene.bodies}:
         names = " ".join(body.id for body in scene.bodies[:20])
         raise UsageError(f"--camera: there is no body {options.camera!r}", f"the bodies are: {names}")
@@ -211,14 +218,14 @@ def _check_finite(motion: Trajectory) -> None:
         raise RuntimeError(f"the engine lost {motion.body_ids[body]} at {motion.times[sample]:g} s")
 
 
-def _tell_what_left(lost: list[tuple[str, float]], tell: Any) -> None:
+def _tell_what_left(lost: list[tuple[str, float]], tell: Callable[[str], object]) -> None:
     for name, at in lost[:5]:
         tell(f"{name} leaves the picture at {at:.1f} s")
     if len(lost) > 5:
         tell(f"{len(lost) - 5} more bodies leave the picture")
 
 
-def _tell_profile(result: Run, tell: Any) -> None:
+def _tell_profile(result: Run, tell: Callable[[str], object]) -> None:
     """What the engine did: times in seconds, the rest are counts; what was not needed is left out."""
     bodies, joints = len(result.scene.bodies), len(result.scene.joints)
     tell(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 import av
 import cv2
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from cli.commands.simulate import until_rest
 from cli.main import main
 from cli.outputs import Outputs
-from cli.render.animation import Extras, drawn
+from cli.render.animation import PLAIN, Extras, drawn
 from cli.render.camera import along, fit
 from cli.render.figure import Figure
 from cli.render.gif import choose_palette
@@ -34,7 +34,7 @@ Straight = Callable[..., Trajectory]
 Picture = NDArray[np.uint8]
 
 
-def frames(figure: Figure, motion: Trajectory, extras: Extras = Extras()) -> list[Picture]:
+def frames(figure: Figure, motion: Trajectory, extras: Extras = PLAIN) -> list[Picture]:
     """Every frame of a motion at 20 fps, in BGR."""
     page = sheet(figure.pen.size)
     found = []
@@ -91,7 +91,7 @@ def test_svg_shows_every_body_where_it_is(scene: Scene, straight: Straight, tmp_
     scene.bodies[1].id = 'a <b> & "c"'
     with Outputs() as files:
         Run("run", scene, straight(scene), 20, Look((640, 480))).write(files, str(out), lambda _: None)
-    root = ElementTree.parse(out).getroot()
+    root = ET.parse(out).getroot()
     space = "{http://www.w3.org/2000/svg}"
     assert root.get("viewBox") == "0 0 640 480"
     ball = root.find(f"{space}g/{space}circle")
