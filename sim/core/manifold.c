@@ -135,38 +135,45 @@ static void polygon_circle(const Outline *a, const Outline *b, double margin, Ma
     }
 }
 
-/* The nearest points of two facing sides, one of them or both a corner, where the sides are past each other's end.
- * Whether they are; `m` is then done. */
-static bool past_end(const Outline *a, int32_t i, const Outline *b, int32_t j, bool flip, double margin, Manifold *m) {
-    int32_t i2 = after(a, i), j2 = after(b, j);
-    Vec p = a->vertex[i], q = a->vertex[i2], u = vsub(q, p);
-    double uu = vdot(u, u), s = vdot(vsub(b->vertex[j], p), u), s2 = vdot(vsub(b->vertex[j2], p), u);
-    int32_t corner_a, corner_b;
-    if (s < 0 && s2 < 0) {
-        corner_a = i;
-        corner_b = s > s2 ? j : j2;
-    } else if (s > uu && s2 > uu) {
-        corner_a = i2;
-        corner_b = s < s2 ? j : j2;
-    } else {
-        return false;
+/* Whether the vertex lies straight out from the side: then no two points of the outlines are nearer to each other. */
+static bool straight_out(const Outline *a, Facing f, const Outline *b) {
+    Vec p = a->vertex[f.side], side = vsub(a->vertex[after(a, f.side)], p), d = vsub(b->vertex[f.vertex], p);
+    double along = vdot(d, side);
+    return along >= 0 && along <= vdot(side, side);
+}
+
+/* The nearest points of two outlines that are apart: a corner of one, and a corner or a side of the other. */
+typedef struct Nearest {
+    double square; /* of the distance */
+    int32_t side, vertex, end; /* of the one with the side, of the other; the corner that it is, or -1 */
+    bool flip;     /* b has the side */
+} Nearest;
+
+static void nearer(const Outline *a, const Outline *b, bool flip, Nearest *best) {
+    for (int32_t i = 0; i < a->count; i++) {
+        int32_t i2 = after(a, i);
+        Vec p = a->vertex[i], side = vsub(a->vertex[i2], p);
+        double length = vdot(side, side);
+        for (int32_t j = 0; j < b->count; j++) {
+            Vec d = vsub(b->vertex[j], p);
+            double along = vdot(d, side);
+            int32_t end = along <= 0 ? i : along >= length ? i2 : -1;
+            Vec away = end < 0 ? vmad(d, -along / length, side) : vsub(b->vertex[j], a->vertex[end]);
+            double square = vdot(away, away);
+            if (square < best->square) *best = (Nearest){square, i, j, end, flip};
+        }
     }
-    Vec c = a->vertex[corner_a], d = b->vertex[corner_b], v = vsub(b->vertex[j2], b->vertex[j]);
-    double t = vdot(vsub(c, b->vertex[j]), v), vv = vdot(v, v);
-    bool on_side = t > 0 && t < vv;
-    if (on_side) d = vmad(b->vertex[j], t / vv, v);
-    double distance = vlength(vsub(d, c));
-    if (distance <= 0) return false;
-    Vec n = vscale(vsub(d, c), 1 / distance), back = vscale(n, -1);
-    bool touches = exposed(a, corner_a, n) && (on_side ? !is_cut(b, j) : exposed(b, corner_b, back));
-    uint32_t feature = (uint32_t)corner_a | (flip ? FROM_B : 0);
-    if (!touches)
-        apart(m, flip ? back : n, distance);
-    else if (flip)
-        one_point(m, back, d, c, feature, margin);
+}
+
+/* A corner of a against a corner of b. */
+static void corners(const Outline *a, int32_t i, const Outline *b, int32_t j, double margin, Manifold *m) {
+    Vec d = vsub(b->vertex[j], a->vertex[i]);
+    double distance = vlength(d);
+    Vec n = vscale(d, 1 / distance);
+    if (exposed(a, i, n) && exposed(b, j, vscale(n, -1)))
+        one_point(m, n, a->vertex[i], b->vertex[j], (uint32_t)i, margin);
     else
-        one_point(m, n, c, d, feature, margin);
-    return true;
+        apart(m, n, distance);
 }
 
 /* The side of a that b faces, and the side of b that faces it, clipped to each other's span.  `flip`: the caller's pair
@@ -176,7 +183,6 @@ static void clip(const Outline *a, const Outline *b, Facing f, bool flip, double
     int32_t i = f.side, i2 = after(a, i), j = f.vertex;
     if (vdot(b->normal[before(b, j)], n) < vdot(b->normal[j], n)) j = before(b, j);
     int32_t j2 = after(b, j);
-    if (f.separation > 0 && past_end(a, i, b, j, flip, margin, m)) return;
     apart(m, flip ? vscale(n, -1) : n, f.separation);
     if (!f.touches) return;
     Vec p = a->vertex[i], first = b->vertex[j2], span = vsub(b->vertex[j], first); /* b's side along t */
@@ -216,10 +222,24 @@ static void between_polygons(const Outline *a, const Outline *b, double margin, 
     }
     /* near a tie a keeps the side, so that a resting pair does not change its mind from step to step */
     double tie = 1e-3 * (fabs(of_a.separation) + fabs(of_b.separation));
-    if (of_a.side < 0 || of_b.separation > of_a.separation + tie)
-        clip(b, a, of_b, true, margin, m);
-    else
-        clip(a, b, of_a, false, margin, m);
+    bool flip = of_a.side < 0 || of_b.separation > of_a.separation + tie;
+    Facing f = flip ? of_b : of_a;
+    if (f.separation > 0 && !straight_out(flip ? b : a, f, flip ? a : b)) {
+        Nearest nearest = {.square = INFINITY};
+        nearer(a, b, false, &nearest);
+        nearer(b, a, true, &nearest);
+        if (nearest.end >= 0) {
+            bool b_has_side = nearest.flip;
+            corners(a, b_has_side ? nearest.vertex : nearest.end, b, b_has_side ? nearest.end : nearest.vertex, margin, m);
+            return;
+        }
+        flip = nearest.flip;
+        const Outline *sided = flip ? b : a, *cornered = flip ? a : b;
+        bool touches = !is_cut(sided, nearest.side) &&
+                       exposed(cornered, nearest.vertex, vscale(sided->normal[nearest.side], -1));
+        f = (Facing){sqrt(nearest.square), nearest.side, nearest.vertex, touches};
+    }
+    clip(flip ? b : a, flip ? a : b, f, flip, margin, m);
 }
 
 void manifold_find(const Outline *a, const Outline *b, double margin, Manifold *m) {

@@ -1,0 +1,76 @@
+import ctypes
+import importlib.util
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def build_backend():
+    spec = importlib.util.spec_from_file_location("native_backend", ROOT / ".packaging" / "native_backend.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="session")
+def probe(tmp_path_factory):
+    """The core with doors into its parts, compiled for the tests."""
+    backend = build_backend()
+    compiler = backend.find_compiler() or [sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline"]
+    built = tmp_path_factory.mktemp("probe") / ("probe" + backend.SUFFIX)
+    sources = [*sorted((ROOT / "sim" / "core").glob("*.c")), ROOT / "tests" / "sim" / "probe.c"]
+    flags = [*backend.FLAGS, "-Werror", *backend.position_independent()]
+    subprocess.run([*compiler, *flags, *map(str, sources), "-o", str(built), "-lm"], check=True)
+    return ctypes.CDLL(str(built))
+
+
+@dataclass
+class Run:
+    """Samples of a run by the crowd alone."""
+
+    times: np.ndarray
+    positions: np.ndarray
+    angles: np.ndarray
+    velocities: np.ndarray
+    spins: np.ndarray
+    modes: np.ndarray
+
+
+REST = 1  # of the core's modes
+
+
+@pytest.fixture(scope="session")
+def crowd(probe):
+    """crowd(scene, duration, fps, tolerance) -> Run."""
+    from sim.engine import _pack
+
+    def run(scene, duration, fps=60.0, tolerance=1e-4):
+        packed, _parts = _pack(scene)
+        samples, n = round(duration * fps) + 1, len(scene.bodies)
+        frames, modes = np.empty((samples, n, 6)), np.empty((samples, n), dtype=np.int32)
+        status = probe.probe_crowd(
+            ctypes.byref(packed),
+            ctypes.c_double(1 / fps),
+            samples,
+            ctypes.c_double(tolerance),
+            ctypes.c_void_p(frames.ctypes.data),
+            ctypes.c_void_p(modes.ctypes.data),
+        )
+        assert status == 0
+        assert np.isfinite(frames).all()
+        return Run(
+            np.arange(samples) / fps,
+            frames[:, :, :2],
+            frames[:, :, 2],
+            frames[:, :, 3:5],
+            frames[:, :, 5],
+            modes,
+        )
+
+    return run
