@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -109,7 +110,7 @@ class Trajectory:
             try:
                 with np.load(io.BytesIO(data), allow_pickle=False) as z:
                     return cls(body_ids=z["body_ids"].tolist(), **{name: z[name] for name in _ARRAYS})
-            except (KeyError, ValueError, OSError) as e:
+            except (KeyError, ValueError, OSError, zipfile.BadZipFile) as e:
                 raise InputError("", f"not a trajectory: {e}") from None
         try:
             d = msgspec.json.decode(data)
