@@ -13,7 +13,7 @@
 static const double TOO_DEEP = 0.3;    /* of the smaller one's width: drawn over each other, not touching */
 static const double TOUCHING = 1e-10;  /* of the scene's size: rounding */
 static const double CONVERGED = 1e-13; /* of the scene's size */
-static const int32_t ROUNDS = 40;
+static const int32_t ROUNDS = 40, POLISH = 10;
 static const double ROW_BUDGET = 1e7;  /* rows looked at, all in all */
 static const double COMPLIANCE = 0.1;  /* of a row whose wishes cannot all be met, relative to its mobility */
 
@@ -21,8 +21,8 @@ typedef struct Slide {
     Vec moved;
     double turned;
     double inverse_mass, inverse_moment;
-    Vec drawn_position;
-    double drawn_angle;
+    Vec drawn_position, apart_position; /* as drawn; as first found without overlap */
+    double drawn_angle, apart_angle;
     bool jammed; /* its overlaps cannot all be undone */
 } Slide;
 
@@ -42,9 +42,10 @@ typedef struct Separation {
     Box *box;
     bool *moves;
     Slide *slide;
-    Row *row;
-    int32_t row_count, row_capacity;
+    Row *row, *last; /* of this round and the one before */
+    int32_t row_count, row_capacity, last_count;
     double touching, deepest;
+    double drawn_deepest, margin;
     double heaviest; /* weight of a body */
     double budget;   /* of rows */
 } Separation;
@@ -79,6 +80,7 @@ static void destroy(Separation *s) {
     free(s->moves);
     free(s->slide);
     free(s->row);
+    free(s->last);
 }
 
 static int find_pairs(Separation *s, double margin) {
@@ -137,8 +139,10 @@ static int add_rows(Separation *s, const Manifold *m, int32_t a, int32_t b) {
     if (s->row_count + 2 > s->row_capacity) {
         int32_t capacity = 2 * s->row_capacity + 64;
         Row *more = realloc(s->row, (size_t)capacity * sizeof *more);
-        if (!more) return SIM_OUT_OF_MEMORY;
-        s->row = more;
+        if (more) s->row = more;
+        Row *last = realloc(s->last, (size_t)capacity * sizeof *last);
+        if (last) s->last = last;
+        if (!more || !last) return SIM_OUT_OF_MEMORY;
         s->row_capacity = capacity;
     }
     const Slide *sa = &s->slide[a], *sb = &s->slide[b];
@@ -155,10 +159,19 @@ static int add_rows(Separation *s, const Manifold *m, int32_t a, int32_t b) {
     return SIM_OK;
 }
 
-/* The rows of all that touches or is near, and the deepest overlap. */
+static Vec joint_gap(const World *world, const Joint *joint) {
+    return vsub(place(body_pose(&world->body[joint->b]), joint->local_b),
+                place(body_pose(&world->body[joint->a]), joint->local_a));
+}
+
+/* The rows of all that touches or is near; the deepest overlap, or the widest that a joint has come apart. */
 static int find_rows(Separation *s, double margin) {
     const World *world = s->world;
     int status = find_pairs(s, margin);
+    Row *swap = s->last;
+    s->last = s->row;
+    s->last_count = s->row_count;
+    s->row = swap;
     s->row_count = 0;
     s->deepest = 0;
     for (int32_t k = 0; k < s->sweep.pair_count; k++) {
@@ -174,12 +187,19 @@ static int find_rows(Separation *s, double margin) {
                 status = add_rows(s, &m, a->body, b->body);
             }
     }
+    for (int32_t i = 0; i < world->joint_count; i++)
+        s->deepest = fmax(s->deepest, vlength(joint_gap(world, &world->joint[i])));
     return status;
 }
 
 static void apply(Slide *slide, Vec impulse, double spin, double sign) {
     slide->moved = vmad(slide->moved, sign * slide->inverse_mass, impulse);
     slide->turned += sign * slide->inverse_moment * spin;
+}
+
+static void push_row(const Row *row, Slide *a, Slide *b, double push) {
+    apply(a, vscale(row->normal, push), push * row->spin_a, -1);
+    apply(b, vscale(row->normal, push), push * row->spin_b, 1);
 }
 
 static double solve_row(Row *row, Slide *a, Slide *b) {
@@ -190,8 +210,7 @@ static double solve_row(Row *row, Slide *a, Slide *b) {
     push = push > 0 ? push : 0;
     double change = push - row->push;
     row->push = push;
-    apply(a, vscale(row->normal, change), change * row->spin_a, -1);
-    apply(b, vscale(row->normal, change), change * row->spin_b, 1);
+    push_row(row, a, b, change);
     return fabs(change) * row->mobility;
 }
 
@@ -200,8 +219,7 @@ static double solve_joint(const World *world, const Joint *joint, Slide *slide) 
     Slide *a = &slide[joint->a], *b = &slide[joint->b];
     const Body *ba = &world->body[joint->a], *bb = &world->body[joint->b];
     Vec ra = turn(pose(ba->position, ba->angle), joint->local_a), rb = turn(pose(bb->position, bb->angle), joint->local_b);
-    Vec apart = vsub(vadd(bb->position, rb), vadd(ba->position, ra));
-    apart = vadd(apart, vsub(vmad(b->moved, b->turned, vperp(rb)), vmad(a->moved, a->turned, vperp(ra))));
+    Vec apart = vadd(joint_gap(world, joint), vsub(vmad(b->moved, b->turned, vperp(rb)), vmad(a->moved, a->turned, vperp(ra))));
     double m = a->inverse_mass + b->inverse_mass, ia = a->inverse_moment, ib = b->inverse_moment;
     double k11 = m + ia * ra.y * ra.y + ib * rb.y * rb.y, k12 = -ia * ra.x * ra.y - ib * rb.x * rb.y;
     double k22 = m + ia * ra.x * ra.x + ib * rb.x * rb.x, det = k11 * k22 - k12 * k12;
@@ -212,12 +230,30 @@ static double solve_joint(const World *world, const Joint *joint, Slide *slide) 
     return vlength(apart);
 }
 
-/* Whether the rows could all be met; the bodies are moved in any case. */
-static bool solve(Separation *s) {
+/* The wish of every body: back to where it was drawn.  What held it off in the round before does so from the start. */
+static void wish(Separation *s) {
+    const World *world = s->world;
+    for (int32_t i = 0; i < world->body_count; i++) {
+        Slide *slide = &s->slide[i];
+        slide->moved = vsub(slide->drawn_position, world->body[i].position);
+        slide->turned = slide->drawn_angle - world->body[i].angle;
+    }
+    bool same = s->row_count == s->last_count;
+    for (int32_t i = 0; i < s->row_count && same; i++) same = s->row[i].a == s->last[i].a && s->row[i].b == s->last[i].b;
+    for (int32_t i = 0; i < s->row_count && same; i++) {
+        Row *row = &s->row[i];
+        row->push = s->last[i].push;
+        push_row(row, &s->slide[row->a], &s->slide[row->b], row->push);
+    }
+}
+
+/* One round. Whether the rows could all be met; the bodies are moved in any case, the farthest so much as `farthest` says. */
+static bool solve(Separation *s, bool from_drawn, double *farthest) {
     World *world = s->world;
     double enough = CONVERGED * world->size, rows = s->row_count + world->joint_count + 1;
-    double far = 4 * s->deepest * rows * rows * s->heaviest; /* a stack of all that there is would not push as hard */
+    double far = 4 * s->drawn_deepest * rows * rows * s->heaviest; /* a stack of all there is would not push as hard */
     double most = INFINITY, hardest = 0;
+    if (from_drawn) wish(s);
     while (most > enough && hardest < far && s->budget > 0) {
         most = 0;
         for (int32_t i = 0; i < s->row_count; i++) {
@@ -229,9 +265,10 @@ static bool solve(Separation *s) {
             most = fmax(most, solve_joint(world, &world->joint[i], s->slide));
         s->budget -= rows;
     }
+    *farthest = 0;
     for (int32_t i = 0; i < world->body_count; i++) {
         Slide *slide = &s->slide[i];
-        if (slide->moved.x == 0 && slide->moved.y == 0 && slide->turned == 0) continue;
+        *farthest = fmax(*farthest, vlength(slide->moved) + world->body[i].reach * fabs(slide->turned));
         world->body[i].position = vadd(world->body[i].position, slide->moved);
         world->body[i].angle += slide->turned;
         slide->moved = vec(0, 0);
@@ -271,20 +308,47 @@ static void report(const Separation *s) {
     }
 }
 
-static int move_apart(Separation *s) {
-    double margin = 2 * s->deepest;
+/* Rounds until nothing overlaps, and until none moves any more where each starts from the drawing. Whether that was reached. */
+static int iterate(Separation *s, int32_t rounds, bool from_drawn, bool *reached) {
+    double farthest = from_drawn ? INFINITY : 0;
     bool met = true;
-    for (int32_t round = 0; round < ROUNDS && met; round++) {
-        int status = find_rows(s, margin);
-        if (status != SIM_OK || s->deepest <= s->touching) return status;
-        met = solve(s);
+    *reached = false;
+    for (int32_t round = 0; round <= rounds && met; round++) {
+        int status = find_rows(s, s->margin);
+        if (status != SIM_OK) return status;
+        *reached = s->deepest <= s->touching && farthest <= s->touching;
+        if (*reached || round == rounds) break;
+        met = solve(s, from_drawn, &farthest);
+        if (!from_drawn) farthest = 0;
     }
-    int status = find_rows(s, margin);
-    if (status != SIM_OK || s->deepest <= s->touching) return status;
-    mark_jammed(s);
-    status = find_rows(s, margin);
-    s->budget = ROW_BUDGET / 10;
-    if (status == SIM_OK) solve(s);
+    return SIM_OK;
+}
+
+static int move_apart(Separation *s) {
+    World *world = s->world;
+    bool reached;
+    int status = iterate(s, ROUNDS, false, &reached);
+    if (status != SIM_OK) return status;
+    if (!reached) {
+        double farthest;
+        status = find_rows(s, s->margin);
+        if (status != SIM_OK) return status;
+        mark_jammed(s);
+        status = find_rows(s, s->margin);
+        s->budget = ROW_BUDGET / 10;
+        if (status == SIM_OK) solve(s, false, &farthest);
+        return status;
+    }
+    /* Each round took the least motion from the last; all together need not have: again, from the drawing. */
+    for (int32_t i = 0; i < world->body_count; i++) {
+        s->slide[i].apart_position = world->body[i].position;
+        s->slide[i].apart_angle = world->body[i].angle;
+    }
+    status = iterate(s, POLISH, true, &reached);
+    for (int32_t i = 0; i < world->body_count && !reached; i++) {
+        world->body[i].position = s->slide[i].apart_position;
+        world->body[i].angle = s->slide[i].apart_angle;
+    }
     return status;
 }
 
@@ -296,6 +360,8 @@ int world_separate(World *world, double tolerance) {
     status = create(&s, world);
     if (status == SIM_OK) status = sort_out(&s);
     if (status == SIM_OK && s.deepest > s.touching) {
+        s.drawn_deepest = s.deepest;
+        s.margin = 2 * s.deepest;
         status = move_apart(&s);
         report(&s);
     }
