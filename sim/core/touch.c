@@ -7,13 +7,13 @@
 
 #define MAX_STEPS 4000
 #define PASSING 1e-5 /* first step for a point that passes by a side, or that a contact holds already [s] */
-#define PATIENCE 60  /* steps after which a search is not on its way to a root */
+#define PATIENCE 60 /* steps after which a search is not on its way to a root */
 
 /* ---------------------------------------------------------------- bounds */
 
 typedef struct PairBound {
     double steer_ab, steer_ba; /* |second derivative| of a gap with the side on b, on a */
-    double closing;            /* speed of the points against each other */
+    double closing; /* speed of the points against each other */
 } PairBound;
 
 /* Bounds over [from, to] for two movers whose shapes reach ra and rb from their centres. */
@@ -121,18 +121,25 @@ static bool is_held(const Search *s, const Gap *g, const Placed *pa, const Place
     return false;
 }
 
+/* A point that touches and hardly moves matters again when it has gone in by half the slack.  One that is in already
+ * matters as soon as it goes on in: farther, the contact would have to lift it, and a body that rocks never rest. */
+static double grazing_step(const Slack *slack, double gap, double steer) {
+    double room = gap > -0.25 * slack->gap ? gap + 0.5 * slack->gap : 1e-3 * slack->gap;
+    return fmax(safe_step(room, 0, steer), 1e-9);
+}
+
 /* How far in time one feature is safe, from its gap now: 0 when it touches. */
 static double feature_step(const Slack *slack, const Gap *g, const PairBound *bound, double steer) {
     double aside = -g->margin - slack->gap; /* how far the foot is from where a touch could be */
     double until_margin = aside > 0 ? aside / bound->closing : 0;
     bool in_front = g->gap > -slack->deep;
     if (aside <= 0 && in_front && g->gap <= slack->root && g->rate < -slack->speed) return 0;
-    if (aside <= 0 && in_front && g->gap < -slack->gap && g->rate < -1e-6 * slack->speed) return 0;
+    if (aside <= 0 && in_front && g->gap < -0.25 * slack->gap && g->rate < -1e-6 * slack->speed) return 0;
     double step;
     if (g->gap > slack->gap || (in_front && fabs(g->rate) > slack->speed)) /* clear, or on its way in or out */
         step = safe_step(fmax(g->gap, 0), g->rate, steer);
-    else if (in_front) /* grazing: it matters again when it has gone in by the slack, or come free */
-        step = fmax(safe_step(fmax(g->gap + 2 * slack->gap, slack->gap), 0, steer), 1e-9);
+    else if (in_front)
+        step = grazing_step(slack, g->gap, steer);
     else /* behind the side: it has to come in front of it first */
         step = fmax(safe_step(-g->gap, -g->rate, steer), 1e-5);
     return fmax(step, until_margin);
