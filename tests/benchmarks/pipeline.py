@@ -6,6 +6,7 @@ that take turns with what they are compared with.  `sketchsim bench pipeline` pr
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import sys
@@ -58,7 +59,7 @@ class Measured:
             sys.executable,
             [sys.executable, *argv],
             os.environ,
-            file_actions=[(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)],
+            file_actions=[(os.POSIX_SPAWN_OPEN, stream, os.devnull, os.O_WRONLY, 0) for stream in (1, 2)],
         )
         _, status, used = os.wait4(process, 0)
         wall = time.perf_counter() - began
@@ -79,11 +80,17 @@ def take_turns(commands: dict[str, list[str]], runs: int) -> dict[str, Measured]
 
 
 def main(argv: list[str]) -> int:
-    runs = int(argv[0]) if argv else RUNS
+    parser = argparse.ArgumentParser(prog="sketchsim bench pipeline", description=__doc__)
+    parser.add_argument(
+        "--runs", type=int, default=RUNS, help="of each command, of which the least times count"
+    )
+    parser.add_argument("--sketches", type=int, default=200, help="in the batch")
+    options = parser.parse_args(argv)
     os.chdir(ROOT)
     with tempfile.TemporaryDirectory() as folder:
-        videos(Path(folder), runs)
-        data(Path(folder), runs)
+        videos(Path(folder), options.runs)
+        data(Path(folder), options.runs)
+        batch(Path(folder), options.sketches)
     return 0
 
 
@@ -96,8 +103,8 @@ def videos(folder: Path, runs: int) -> None:
     measured = take_turns(
         {
             "plain": [str(PLAIN), str(cart), str(out)],
-            "cart": ["-m", "cli", "simulate", str(SAMPLES / "cart.json"), "-o", str(out)],
-            "resting": ["-m", "cli", "simulate", str(resting), "-o", str(out)],
+            "cart": ["-m", "cli", "simulate", str(SAMPLES / "cart.json"), "-q", "-o", str(out)],
+            "resting": ["-m", "cli", "simulate", str(resting), "-q", "-o", str(out)],
         },
         runs,
     )
@@ -123,19 +130,41 @@ def data(folder: Path, runs: int) -> None:
     for name in names:
         scenes[name] = folder / f"{name}-scene.json"
         sketchsim("recognize", SAMPLES / f"{name}.json", "-o", scenes[name])
-    print(f"\n{'10 s, wall time':<20}{'strokes to scene':>20}{'scene to .npz':>20}{'scene to .json':>20}")
+    columns = ("strokes to scene", "scene to .npz", "scene to .json")
+    print(f"\n{'10 s; CPU and wall':<20}" + "".join(f"{column:>24}" for column in columns))
     for name in names:
         measured = take_turns(
             {
                 "read": ["-m", "cli", "recognize", str(SAMPLES / f"{name}.json"), "-o", str(scene)],
-                "npz": ["-m", "cli", "simulate", str(scenes[name]), "-o", str(out)],
-                "json": ["-m", "cli", "simulate", str(scenes[name]), "-o", "-"],
+                "npz": ["-m", "cli", "simulate", str(scenes[name]), "-q", "-o", str(out)],
+                "json": ["-m", "cli", "simulate", str(scenes[name]), "-q", "-o", "-"],
             },
             max(2, runs - 2),
         )
-        print(
-            f"{name:<20}" + "".join(f"{measured[key].wall * 1e3:17.0f} ms" for key in ("read", "npz", "json"))
-        )
+        times = ((measured[key].cpu * 1e3, measured[key].wall * 1e3) for key in ("read", "npz", "json"))
+        print(f"{name:<20}" + "".join(f"{cpu:14.0f} {wall:6.0f} ms" for cpu, wall in times))
+
+
+def batch(folder: Path, count: int) -> None:
+    """How busy the cores are with many sketches: the samples over and over, each a little larger or smaller."""
+    drawn = [json.loads(path.read_bytes()) for path in sorted(SAMPLES.glob("*.json"))]
+    drawn = [sketch for sketch in drawn if "strokes" in sketch]
+    lines = folder / "sketches.jsonl"
+    with lines.open("w") as f:
+        for k in range(count):
+            sketch = dict(drawn[k % len(drawn)])
+            factor = 0.9 + 0.2 * k / count
+            sketch["strokes"] = [
+                {"points": [[x * factor, y * factor] for x, y, *_ in stroke["points"]]}
+                for stroke in sketch["strokes"]
+            ]
+            print(json.dumps(sketch), file=f)
+    measured = Measured()
+    measured.run(["-m", "cli", "batch", str(lines), "-q", "-o", str(folder / "runs")])
+    cores = len(os.sched_getaffinity(0))
+    written = len(list((folder / "runs").glob("*.npz")))
+    busy = measured.cpu / (measured.wall * cores)
+    print(f"\nbatch: {written} of {count} sketches in {measured.wall:.1f} s, {cores} cores busy {busy:.0%}")
 
 
 def sketchsim(*argv: object) -> None:
