@@ -133,7 +133,7 @@ class Figure:
         at = carried(self.scene.bodies[moving[0]], np.array([joint.position]))
         radii = (7.0 * u + 0.5, 7.0 * u + 0.5 - self.pen.width, max(2.4 * u, 1.4))
         rings = zip(radii, (style.ink, style.paper, style.ink), strict=True)
-        return [Part(moving[0], at, color, round((r - BLOOM) * ONE)) for r, color in rings]
+        return [Part(moving[0], at, color, max(1, round((r - BLOOM) * ONE))) for r, color in rings]
 
     def place(self, positions: Array, angles: Array) -> Points:
         """Every part's points for bodies at positions (..., bodies, 2) [m] and angles (..., bodies) [rad].

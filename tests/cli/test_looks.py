@@ -263,3 +263,35 @@ def test_every_letter_is_drawn_within_its_mask() -> None:
         assert max(int(edge.max()) for edge in edges) == 0, letter
     assert lettering("0", 12).shape[0] < lettering("0", 24).shape[0]
     assert np.array_equal(lettering("€", 20), lettering("?", 20))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--size", "64x64"],
+        ["--duration", "0.001"],
+        ["--fps", "0.1"],
+        ["--fps", "29.97", "--duration", "0.2"],
+        ["--size", "64x512", "--style", "blueprint", "--vectors"],
+    ],
+    ids=" ".join,
+)
+def test_unusual_sizes_and_rates_are_drawn_too(options: list[str], scene_file: Path) -> None:
+    scene = json.loads(scene_file.read_text())
+    scene["joints"] = [{"type": "pivot", "bodies": ["ball", None], "position": [0.75, -1.5]}]
+    scene_file.write_text(json.dumps(scene))
+    outputs = [f"-o.{kind}" for kind in ("mp4", "gif", "png", "svg", "html")]
+    argv = ["simulate", str(scene_file), "--duration", "1", "--size", "320x240"]
+    assert (
+        main([*argv, *(out.replace("-o.", f"-o{scene_file.parent}/run.") for out in outputs), *options]) == 0
+    )
+    assert all((scene_file.parent / f"run.{kind[3:]}").stat().st_size > 300 for kind in outputs)
+
+
+def test_a_scene_without_bodies_is_drawn(tmp_path: Path) -> None:
+    empty = tmp_path / "empty.json"
+    empty.write_text('{"bodies": []}')
+    targets = [str(tmp_path / f"run.{kind}") for kind in ("mp4", "webm", "gif", "png", "svg", "html", "csv")]
+    argv = [word for target in targets for word in ("-o", target)]
+    assert main(["simulate", str(empty), "--duration", "1", "--size", "64x64", *argv]) == 0
+    assert all(Path(target).exists() for target in targets)
