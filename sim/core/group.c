@@ -89,9 +89,8 @@ static int find_contacts(Exact *e) {
 
 /* ---------------------------------------------------------------- what happens */
 
-/* Bounces that come ever faster end where they would: one whose height stays within a part of the tolerance is none.  Where
- * nothing pulls the pair together there is no height, and every bounce counts. */
-static int settle_low_bounces(Exact *e, double time) {
+/* How fast each contact's gap was being closed by the motion that ends here. */
+static int find_pulls(Exact *e, double time) {
     System *g = &e->group;
     int status = system_place(g);
     if (status != SIM_OK) return status;
@@ -106,16 +105,58 @@ static int settle_low_bounces(Exact *e, double time) {
         }
     }
     for (int32_t k = 0; k < g->contact_count; k++) {
-        Contact *c = &g->contact[k];
         const Row *row = contact_row(g, k);
-        double pull = -row->bias, bounce = c->elasticity * row_speed(row, g->state);
+        double pull = -row->bias;
         for (int i = 0; i < 3; i++) {
             if (row->a >= 0) pull -= row->ja[i] * e->acceleration[3 * row->a + i];
             if (row->b >= 0) pull -= row->jb[i] * e->acceleration[3 * row->b + i];
         }
-        if (pull > 0 && bounce * bounce < 2 * pull * BOUNCE * e->tolerance) c->elasticity = 0;
+        g->contact[k].pull = pull;
     }
     return SIM_OK;
+}
+
+/* Whether a contact that parts at this speed is back before it has gone far enough to be seen.  Where nothing pulls a pair
+ * together it does not come back, and every speed counts. */
+static bool is_low(const Exact *e, double pull, double speed) {
+    return pull > 0 && speed * speed < 2 * pull * BOUNCE * e->tolerance;
+}
+
+/* Bounces that come ever faster end where they would: one too low to be seen is none. */
+static void settle_low_bounces(Exact *e) {
+    System *g = &e->group;
+    for (int32_t k = 0; k < g->contact_count; k++) {
+        Contact *c = &g->contact[k];
+        if (is_low(e, c->pull, c->elasticity * row_speed(contact_row(g, k), g->state))) c->elasticity = 0;
+    }
+}
+
+static double pull_of_pair(const System *g, const Contact *of) {
+    double most = 0;
+    for (int32_t k = 0; k < g->contact_count; k++) {
+        const Feature *f = &g->contact[k].feature, *h = &of->feature;
+        bool same = (f->shape_a == h->shape_a && f->shape_b == h->shape_b) ||
+                    (f->shape_a == h->shape_b && f->shape_b == h->shape_a);
+        if (same) most = fmax(most, g->contact[k].pull);
+    }
+    return most;
+}
+
+/* A body that rocks from corner to corner, ever lower, comes to rest on both: a lift too low to be seen is none. */
+static int settle_low_lifts(Exact *e) {
+    System *g = &e->group;
+    bool any = false;
+    for (int32_t k = 0; k < g->contact_count; k++) {
+        Contact *c = &g->contact[k];
+        double speed = row_speed(contact_row(g, k), g->state), slip = row_speed(contact_row(g, k) + 1, g->state);
+        bool low = speed > e->slack.speed && is_low(e, pull_of_pair(g, c), speed);
+        any = any || low;
+        c->active = low || fabs(speed) <= e->slack.speed;
+        c->slide = fabs(slip) > e->slack.speed ? 1 : 0;
+    }
+    if (!any) return SIM_OK;
+    int status = smooth_prepare(&e->smooth, g);
+    return status == SIM_OK ? smooth_project_velocities(&e->smooth, g) : status;
 }
 
 static int resolve(Exact *e, double time) {
@@ -312,7 +353,10 @@ int group_reform(Exact *e, double time) {
     }
     system_find_joints(g);
     double start = seconds_now();
-    status = settle_low_bounces(e, time);
+    status = find_pulls(e, time);
+    settle_low_bounces(e);
+    if (status == SIM_OK) status = resolve(e, time);
+    if (status == SIM_OK) status = settle_low_lifts(e);
     if (status == SIM_OK) status = resolve(e, time);
     if (status == SIM_OK) status = find_modes(&e->solver, g, &e->slack, e->acceleration);
     if (status == SIM_BAD_INPUT) {

@@ -265,7 +265,7 @@ static int project_positions(Smooth *s, System *system) {
     return SIM_OK;
 }
 
-static int project_velocities(Smooth *s, System *system) {
+int smooth_project_velocities(Smooth *s, System *system) {
     int status = system_place(system);
     if (status != SIM_OK) return status;
     store(system, s->start);
@@ -292,7 +292,7 @@ int smooth_project(Smooth *s, System *system, double *left) {
     *left = 0;
     if (s->active_count == 0) return SIM_OK;
     int status = project_positions(s, system);
-    if (status == SIM_OK) status = project_velocities(s, system);
+    if (status == SIM_OK) status = smooth_project_velocities(s, system);
     for (int32_t i = 0; i < s->active_count; i++)
         *left = fmax(*left, fabs(row_speed(&system->row[s->active[i]], system->state)));
     return status;

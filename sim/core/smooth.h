@@ -26,6 +26,7 @@ int smooth_prepare(Smooth *smooth, System *system);
 /* Take the states onto the constraints: positions, then velocities.  *left becomes the largest speed against a row that
  * is left over: nearly contradictory rows, as of a jammed wedge, cannot all be met. */
 int smooth_project(Smooth *smooth, System *system, double *left);
+int smooth_project_velocities(Smooth *smooth, System *system);
 
 /* One step from the system's states at time `from`, no farther than `limit`, by a length near *h; *h becomes the length to
  * try next.  motion[i] is filled for every member and ends where the step does, or at the first moment at which a contact's
