@@ -151,7 +151,8 @@ def _drop_overshoots(graph: Graph, pen: float) -> None:
         if not short or len(rest) != 2:
             continue
         longest = max(graph.edges[e].length for e in short)
-        if min(graph.edges[e].length for e, _ in rest) > 3 * longest:
+        # one tip at a fork is a corner's; two short arms may be a small cross's, whose others are not much longer
+        if min(graph.edges[e].length for e, _ in rest) > (1.2 if len(short) == 1 else 3.0) * longest:
             gone.update(short)
             corner = _corner(graph, node, rest, pen)
             if corner is not None:

@@ -19,7 +19,7 @@ from sketch.scan.junctions import LONELY, Junction, Pairs, turn_cost
 
 __all__ = ["close_outlines"]
 
-CLOSED = 3.5  # [rad²] what a closed outline is worth: two corners of a square less one end at a junction
+CLOSED = 2.5  # [rad²] what a closed outline is worth: the corner of a square that closes it
 GAP = 0.15  # of an outline's length: what its ends may be apart
 SHORTEST = 8.0  # pen widths: less is no outline
 MOST_BRANCHES = 6  # of a junction that is looked at: there are 76 ways to pair six
@@ -132,5 +132,8 @@ def _is_outline(
         gap = graph.outward(first)[0] - graph.outward((e, 1 - side))[0]
         if np.hypot(gap[0], gap[1]) > GAP * drawn:
             return False
-    passed = [where[end] for end in (trail if around else trail[1:]) if end in where]
+    passed = [where[end] for end in trail if end in where]
+    if not around:
+        e, side = trail[-1]
+        passed += [where[end] for end in [(e, 1 - side)] if end in where]
     return len(passed) == len(set(passed))
