@@ -131,13 +131,14 @@ static void settle_low_bounces(Exact *e) {
     }
 }
 
-static double pull_of_pair(const System *g, const Contact *of) {
+/* The strongest pull on a contact's bodies: when they turn from one contact to another, that is what brings them back. */
+static double pull_about(const System *g, const Contact *of) {
     double most = 0;
     for (int32_t k = 0; k < g->contact_count; k++) {
         const Feature *f = &g->contact[k].feature, *h = &of->feature;
-        bool same = (f->shape_a == h->shape_a && f->shape_b == h->shape_b) ||
-                    (f->shape_a == h->shape_b && f->shape_b == h->shape_a);
-        if (same) most = fmax(most, g->contact[k].pull);
+        bool shared = (f->body_a != 0 && (f->body_a == h->body_a || f->body_a == h->body_b)) ||
+                      (f->body_b != 0 && (f->body_b == h->body_a || f->body_b == h->body_b));
+        if (shared) most = fmax(most, g->contact[k].pull);
     }
     return most;
 }
@@ -149,7 +150,7 @@ static int settle_low_lifts(Exact *e) {
     for (int32_t k = 0; k < g->contact_count; k++) {
         Contact *c = &g->contact[k];
         double speed = row_speed(contact_row(g, k), g->state), slip = row_speed(contact_row(g, k) + 1, g->state);
-        bool low = speed > e->slack.speed && is_low(e, pull_of_pair(g, c), speed);
+        bool low = speed > e->slack.speed && is_low(e, pull_about(g, c), speed);
         any = any || low;
         c->active = low || fabs(speed) <= e->slack.speed;
         c->slide = fabs(slip) > e->slack.speed ? 1 : 0;
