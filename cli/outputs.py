@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from types import TracebackType
@@ -68,9 +67,9 @@ class Outputs:
         """A path to write `target`'s content to; the same folder, so that renaming cannot fail half-way."""
         path = os.path.realpath(target)
         folder, name = os.path.split(path)
-        fd, beside = tempfile.mkstemp(dir=folder, prefix=f".{name}.", suffix=Path(name).suffix)
-        os.close(fd)
-        self._beside.append((beside, path))
+        beside = os.path.join(folder, f".{name}.{os.urandom(6).hex()}{Path(name).suffix}")
+        self._beside.append((beside, path))  # before it exists: an interrupt may come at any time
+        os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))
         return beside
 
     def write(self, target: str, content: bytes) -> None:

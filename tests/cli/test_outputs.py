@@ -81,7 +81,8 @@ def test_an_interrupted_run_leaves_nothing(scene_file: Path, number: signal.Sign
         assert len(os.listdir(folder)) == 2, "the file beside did not appear"
         process.send_signal(number)
         _, stderr = process.communicate(timeout=30)
-    assert process.returncode == 130
+    # A shell sees 130 either way: Python ends itself by SIGINT where the interrupt came within an exec().
+    assert process.returncode in (130, -signal.SIGINT)
     assert stderr.splitlines()[-1] == "error: interrupted; no output was written"
     assert os.listdir(folder) == ["scene.json"]
 
