@@ -363,23 +363,46 @@ static void dense(const Smooth *s, int32_t c, double h, double *out) {
     memcpy(out, p, sizeof p);
 }
 
-/* How far the contacts are from where one of their modes ends: negative past it. Forces are those last found. */
+/* How far a contact is from where its mode ends, in each of three ways: its force would pull; it slips, or its slip comes
+ * to rest; its point leaves the side. Negative past it; forces are those last found. */
+static void mode_ends(const Smooth *s, const System *system, const Contact *c, double scale, double ends[3]) {
+    int32_t a = system->place_of[c->feature.body_a], b = system->place_of[c->feature.body_b];
+    Gap g =
+        feature_gap(&c->feature, a >= 0 ? &system->placed[a] : &BACKGROUND, b >= 0 ? &system->placed[b] : &BACKGROUND);
+    ends[0] = c->force / scale + DECISIVE;
+    ends[1] = INFINITY;
+    if (c->slide != 0)
+        ends[1] = c->slide * g.slip + 0.01 * s->slack.speed;
+    else if (c->friction > 0)
+        ends[1] = (c->friction * c->force - fabs(c->along_force)) / scale + DECISIVE;
+    ends[2] = g.margin + s->slack.gap;
+}
+
 static double modes_margin(const Smooth *s, const System *system, double scale) {
-    double least = INFINITY;
+    double least = INFINITY, ends[3];
     for (int32_t k = 0; k < system->contact_count; k++) {
         const Contact *c = &system->contact[k];
         if (!c->active) continue;
-        int32_t a = system->place_of[c->feature.body_a], b = system->place_of[c->feature.body_b];
-        Gap g = feature_gap(&c->feature, a >= 0 ? &system->placed[a] : &BACKGROUND,
-                            b >= 0 ? &system->placed[b] : &BACKGROUND);
-        least = fmin(least, c->force / scale + DECISIVE);
-        if (c->slide != 0)
-            least = fmin(least, c->slide * g.slip + 0.01 * s->slack.speed);
-        else if (c->friction > 0)
-            least = fmin(least, (c->friction * c->force - fabs(c->along_force)) / scale + DECISIVE);
-        least = fmin(least, g.margin + s->slack.gap);
+        mode_ends(s, system, c, scale, ends);
+        for (int i = 0; i < 3; i++)
+            if (!(c->unsure & 1 << i)) least = fmin(least, ends[i]);
     }
     return least;
+}
+
+/* Ends that are past before the step begins do not count in it: redundant contacts may share out forces otherwise. */
+static bool find_unsure(const Smooth *s, System *system, double scale) {
+    bool any = false;
+    double ends[3];
+    for (int32_t k = 0; k < system->contact_count; k++) {
+        Contact *c = &system->contact[k];
+        c->unsure = 0;
+        if (!c->active) continue;
+        mode_ends(s, system, c, scale, ends);
+        for (int i = 0; i < 3; i++) c->unsure |= (ends[i] < 0) << i;
+        any = any || c->unsure;
+    }
+    return any;
 }
 
 static double margin_at(Smooth *s, System *system, const Motion *motion, double time, double scale) {
@@ -427,8 +450,8 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
     store(system, s->start);
     int status = derive(s, system, s->start, s->k[0]);
     double scale = force_scale(system), margin = INFINITY, step;
-    bool checked = modes_margin(s, system, scale) >= 0;
-    if (!checked) *h = fmin(*h, UNSURE);
+    bool unsure = find_unsure(s, system, scale);
+    if (unsure) *h = fmin(*h, UNSURE);
     for (int tries = 0;; tries++) {
         step = fmin(*h, limit - from);
         margin = INFINITY;
@@ -459,11 +482,11 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
             dense(s, 6 * i + 3 + c, step, m->v[c]);
         }
     }
-    *ended = !checked;
-    if (margin < 0 && checked) {
+    *ended = unsure;
+    if (margin < 0) {
         double stop = find_end_of_modes(s, system, motion, from, from + step, scale);
-        *ended = stop <= from + step;
-        if (*ended)
+        *ended = unsure || stop <= from + step;
+        if (stop <= from + step)
             for (int32_t i = 0; i < system->count; i++) motion[i].end = stop;
     }
     return status;

@@ -17,6 +17,7 @@ typedef struct Contact {
     int slide;                 /* 0: sticks; +1, -1: slides along, against `along` */
     bool active;               /* presses: its normal row holds */
     double force, along_force; /* the last ones found [N] */
+    int unsure;                /* bits of the ends of its mode that were past already when a step began */
     double pull;               /* how its gap was being closed when an event came [m/s^2] */
 } Contact;
 
