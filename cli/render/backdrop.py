@@ -16,7 +16,7 @@ from cli.render.pen import Pen
 from cli.render.style import RGB, body_paints, mix
 from sim.scene import Joint, Scene
 
-__all__ = ["annotate", "backdrop", "length_label", "round_length"]
+__all__ = ["annotate", "backdrop", "grid_step", "length_label", "round_length"]
 
 Array = NDArray[np.float64]
 
@@ -48,10 +48,15 @@ def _draw_strokes(canvas: Canvas, camera: Camera, pen: Pen, strokes: list[Array]
     cv2.polylines(canvas.planes[0], lines, False, color[::-1], max(1, round(pen.unit)), cv2.LINE_AA, SHIFT)
 
 
+def grid_step(camera: Camera) -> float:
+    """The side of a square of the grid [m]."""
+    return round_length(0.2 * min(camera.size) / camera.scale)
+
+
 def _draw_grid(canvas: Canvas, camera: Camera, pen: Pen, color: RGB) -> None:
     """Squares of a round length, 5 to 12 of them in the picture's height."""
     width, height = camera.size
-    step = round_length(0.2 * min(width, height) / camera.scale) * camera.scale
+    step = grid_step(camera) * camera.scale
     left, top = (-camera.corner[0] * camera.scale) % step, (camera.corner[1] * camera.scale) % step
     for x in np.arange(left, width, step):
         pen.line(canvas, np.array([x, 0.0]), np.array([x, float(height)]), 1.0, color)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
-from cli.render.backdrop import length_label, round_length
+from cli.render.backdrop import grid_step, length_label, round_length
 from cli.render.figure import Figure, carried
 from cli.render.ink import Ink
 from cli.render.style import RGB
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from sim.trajectory import Trajectory
 
 __all__ = ["page"]
+
+Array = NDArray[np.float64]
 
 PLAYER = Path(__file__).with_name("player")
 SCRIPTS = ("recording", "stage", "graphs", "controls")
@@ -64,7 +67,9 @@ def _data(figure: Figure, motion: Trajectory, ink: Ink) -> dict[str, Any]:
         "drawn": _css(style.drawn),
         "bodies": [_body(figure, k) for k in range(len(scene.bodies))],
         "pivots": [_pivot(figure, joint) for joint in scene.joints],
-        "ink": [np.round(stroke, 3).tolist() for _, stroke in ink],  # a millimetre of a page of ten metres
+        "grid": _grid(figure),
+        "ink": [_stroke(figure, body, stroke) for body, stroke in ink],
+        "movesInk": style.moves_ink,
         "motion": base64.b64encode(samples.astype("<f4").tobytes()).decode(),
     }
 
@@ -82,6 +87,7 @@ def _body(figure: Figure, k: int) -> dict[str, Any]:
         "outline": [] if round_ else [list(p) for p in body.shape.vertices],  # type: ignore[union-attr]
         "mass": mass,
         "moment": moment,
+        "color": _css(paints.color),
         "fill": _css(paints.filling),
         "edge": _css(paints.edge),
         "stripes": _css(paints.stripes),
@@ -97,6 +103,19 @@ def _pivot(figure: Figure, joint: Joint) -> dict[str, Any]:
     )
     k = moving[0] if moving else -1
     return {"body": k, "at": at, "world": list(joint.position), "ground": None in joint.bodies}
+
+
+def _stroke(figure: Figure, body: int | None, stroke: Array) -> dict[str, Any]:
+    """A stroke to the millimetre of a page of ten metres: in the frame of the body that takes it along, if any."""
+    if body is None or not figure.style.moves_ink:
+        return {"body": -1, "points": np.round(stroke, 3).tolist()}
+    return {"body": body, "points": np.round(carried(figure.scene.bodies[body], stroke), 3).tolist()}
+
+
+def _grid(figure: Figure) -> dict[str, Any] | None:
+    if figure.style.grid is None:
+        return None
+    return {"step": grid_step(figure.camera), "color": _css(figure.style.grid)}
 
 
 def _css(color: RGB) -> str:

@@ -11,7 +11,7 @@ from cli.render.backdrop import length_label, round_length
 from cli.render.figure import Figure
 from cli.render.ink import Ink
 from cli.render.style import RGB, Paints
-from sim.scene import Circle
+from sim.scene import Circle, Joint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,42 +21,74 @@ __all__ = ["svg"]
 
 def svg(figure: Figure, ink: Ink | None = None) -> bytes:
     """The scene before it moves, as SVG 1.1."""
-    (width, height), style, u = figure.camera.size, figure.style, figure.pen.unit
-    line = figure.pen.width
-    out = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
-        f'viewBox="0 0 {width} {height}" stroke-linejoin="round" stroke-linecap="round" fill="none">',
-        f'<rect width="{width}" height="{height}" fill="{_css(style.paper)}"/>',
-        f'<g stroke="{_css(style.drawn)}" stroke-width="{u:g}">',
-        *(f'<polyline points="{_points(figure.camera.pixels(stroke))}"/>' for _, stroke in ink or []),
+    (width, height), style = figure.camera.size, figure.style
+    strokes = _strokes(figure, ink or [])
+    bodies = [_body(figure, k) for k in range(len(figure.scene.bodies))]
+    if style.moves_ink and ink:
+        content = [*bodies, *strokes]
+    else:
+        supports = [_support(figure, joint) for joint in figure.scene.joints if None in joint.bodies]
+        pivots = [_pivot(figure, joint) for joint in figure.scene.joints]
+        content = [*strokes, *supports, *bodies, *pivots]
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
+            f'viewBox="0 0 {width} {height}" stroke-linejoin="round" stroke-linecap="round" fill="none">',
+            f'<rect width="{width}" height="{height}" fill="{_css(style.paper)}"/>',
+            *content,
+            *_annotations(figure),
+            "</svg>\n",
+        ]
+    ).encode()
+
+
+def _strokes(figure: Figure, ink: Ink) -> list[str]:
+    """The person's strokes."""
+    return [
+        f'<g stroke="{_css(figure.style.drawn)}" stroke-width="{figure.pen.unit:g}">',
+        *(f'<polyline points="{_points(figure.camera.pixels(stroke))}"/>' for _, stroke in ink),
         "</g>",
     ]
-    for k, body in enumerate(figure.scene.bodies):
-        paints = figure.paints[k]
-        fill = f"url(#hatch{k})" if body.anchored else _css(paints.filling)
-        if body.anchored:
-            out.append(_hatch(f"hatch{k}", 11 * u, paints))
-        look = f'fill="{fill}" stroke="{_css(paints.edge)}" stroke-width="{line:g}"'
-        named = f"<title>{_text(body.id)}</title>"
-        if isinstance(body.shape, Circle):
-            x, y = figure.camera.pixels(np.array(body.position))
-            r = body.shape.radius * figure.camera.scale
-            end = f"M{x:.2f} {y:.2f}l{r * np.cos(body.angle):.2f} {-r * np.sin(body.angle):.2f}"
-            mark = (
-                ""
-                if body.anchored
-                else f'<path d="{end}" stroke="{_css(paints.edge)}" stroke-width="{line:g}"/>'
-            )
-            out.append(f'<g><circle cx="{x:.2f}" cy="{y:.2f}" r="{r:.2f}" {look}/>{mark}{named}</g>')
-        else:
-            corners = _points(figure.camera.pixels(np.array(body.outline())))
-            out.append(f'<polygon points="{corners}" {look}>{named}</polygon>')
-    for joint in figure.scene.joints:
-        x, y = figure.camera.pixels(np.array(joint.position))
-        rings = f'fill="{_css(style.paper)}" stroke="{_css(style.ink)}" stroke-width="{line:g}"'
-        out.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{7 * u:g}" {rings}/>')
-        out.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{2.4 * u:g}" fill="{_css(style.ink)}"/>')
-    return "\n".join([*out, *_annotations(figure), "</svg>\n"]).encode()
+
+
+def _body(figure: Figure, k: int) -> str:
+    """A body under its id as the title."""
+    body, paints, line = figure.scene.bodies[k], figure.paints[k], figure.pen.width
+    plain = figure.style.moves_ink
+    hatched = body.anchored and not plain
+    before = _hatch(f"hatch{k}", 11 * figure.pen.unit, paints) if hatched else ""
+    edge = "" if plain else f' stroke="{_css(paints.edge)}" stroke-width="{line:g}"'
+    look = f'fill="{f"url(#hatch{k})" if hatched else _css(paints.filling)}"{edge}'
+    named = f"<title>{_text(body.id)}</title>"
+    if not isinstance(body.shape, Circle):
+        corners = _points(figure.camera.pixels(np.array(body.outline())))
+        return f'{before}<polygon points="{corners}" {look}>{named}</polygon>'
+    x, y = figure.camera.pixels(np.array(body.position))
+    r = body.shape.radius * figure.camera.scale
+    mark = ""
+    if not body.anchored:
+        end = f"M{x:.2f} {y:.2f}l{r * np.cos(body.angle):.2f} {-r * np.sin(body.angle):.2f}"
+        mark = f'<path d="{end}" stroke="{_css(paints.edge)}" stroke-width="{line:g}"/>'
+    return f'{before}<g><circle cx="{x:.2f}" cy="{y:.2f}" r="{r:.2f}" {look}/>{mark}{named}</g>'
+
+
+def _pivot(figure: Figure, joint: Joint) -> str:
+    x, y = figure.camera.pixels(np.array(joint.position))
+    u, paper, ink = figure.pen.unit, _css(figure.style.paper), _css(figure.style.ink)
+    ring = f'r="{6 * u:g}" fill="{paper}" stroke="{ink}" stroke-width="{figure.pen.width:g}"'
+    at = f'cx="{x:.2f}" cy="{y:.2f}"'
+    return f'<circle {at} {ring}/><circle {at} r="{2.4 * u:g}" fill="{ink}"/>'
+
+
+def _support(figure: Figure, joint: Joint) -> str:
+    """The triangle on hatched ground under a pivot on the background."""
+    x, y = figure.camera.pixels(np.array(joint.position))
+    u = figure.pen.unit
+    lines = [f"M{x:.2f} {y:.2f}l{15 * u:g} {24 * u:g}h{-30 * u:g}z", f"m{-22.5 * u:g} {24 * u:g}h{45 * u:g}"]
+    lines += [f"M{x + k * u:.2f} {y + 24 * u:.2f}l{-6 * u:g} {8 * u:g}" for k in range(-17, 23, 8)]
+    return (
+        f'<path d="{"".join(lines)}" stroke="{_css(figure.style.ink)}" stroke-width="{figure.pen.width:g}"/>'
+    )
 
 
 def _hatch(name: str, period: float, paints: Paints) -> str:

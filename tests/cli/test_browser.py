@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import queue
 import shutil
 import subprocess
@@ -183,6 +184,37 @@ def test_the_page_lets_one_choose_a_body_by_touch(scene_file: Path, browse: Brow
     assert [seen[name] for name in ("first", "box", "ball", "floor", "besides")] == [1, 2, 1, 0, 0]
     assert seen["playing"]
     assert seen["momentum"] == pytest.approx(3.14159265 * 0.25 * 2, rel=1e-6)
+
+
+def test_the_page_moves_the_ink(tmp_path: Path, browse: Browse) -> None:
+    """A ball drawn on a page without gravity: its ring is at the top of the ball, wherever the ball is."""
+    drawing, out = tmp_path / "ball.json", tmp_path / "run.html"
+    ring = [[160 + 60 * math.cos(k / 10), 240 + 60 * math.sin(k / 10)] for k in range(63)]
+    sketch = {"width": 640, "height": 480, "pixels_per_metre": 100, "strokes": [{"points": ring}]}
+    drawing.write_text(json.dumps(sketch))
+    argv = [
+        "simulate",
+        str(drawing),
+        "-o",
+        str(out),
+        "--style",
+        "ink",
+        "--size",
+        "640x480",
+        "--duration",
+        "1",
+    ]
+    assert main([*argv, "-q", "--gravity", "4,0"]) == 0
+    script = """
+      const darkest = (x) => Math.min(...[...Array(9)].map((_, k) => Math.max(...pixel(x, 176 + k))));
+      const seen = { before: [darkest(160), darkest(360)] };
+      player.seek(1);
+      seen.after = [darkest(160), darkest(360)];
+      report(seen);
+    """
+    seen = browse(out.read_text("utf-8").replace("</body>", f"<script>{PLAY}{script}</script></body>"))
+    assert seen["before"][0] < 130 < 200 < seen["before"][1]
+    assert seen["after"][1] < 130 < 200 < seen["after"][0]
 
 
 def test_the_page_needs_nothing_else(scene_file: Path, browse: Browse) -> None:

@@ -29,24 +29,48 @@ class Stage {
     c.fillRect(0, 0, this.canvas.width, this.canvas.height);
     c.setTransform(scale, 0, 0, -scale, -left * scale, top * scale);
     c.lineJoin = c.lineCap = "round";
-    this.drawInk();
+    if (recording.grid) this.drawGrid();
+    if (!recording.movesInk) this.drawInk();
     recording.bodies.forEach((body, k) => body.anchored && this.drawBody(body, recording.at(k, 0), k));
-    recording.pivots.forEach((pivot) => pivot.ground && this.drawSupport(pivot));
+    if (!recording.movesInk) recording.pivots.forEach((pivot) => pivot.ground && this.drawSupport(pivot));
     if (player.trails) this.drawTrails();
     recording.bodies.forEach((body, k) => body.anchored || this.drawBody(body, recording.at(k, player.time), k));
-    recording.pivots.forEach((pivot) => this.drawPivot(pivot));
+    if (recording.movesInk) this.drawInk();
+    else recording.pivots.forEach((pivot) => this.drawPivot(pivot));
     if (player.vectors) this.drawVectors();
     this.drawScale();
     this.drawGravity();
   }
 
+  drawGrid() {
+    const { grid: { step, color }, corner: [left, top], size: [width, height], scale } = this.recording;
+    const [right, bottom] = [left + width / scale, top - height / scale];
+    const c = this.context;
+    c.beginPath();
+    for (let x = Math.ceil(left / step) * step; x < right; x += step) this.path([[x, bottom], [x, top]]);
+    for (let y = Math.ceil(bottom / step) * step; y < top; y += step) this.path([[left, y], [right, y]]);
+    c.strokeStyle = color;
+    c.lineWidth = this.unit;
+    c.stroke();
+  }
+
+  /** The person's strokes; in the style that moves them each goes with its body. */
   drawInk() {
     const c = this.context;
     c.strokeStyle = this.recording.drawn;
-    c.lineWidth = this.unit;
-    c.beginPath();
-    for (const stroke of this.recording.ink) this.path(stroke);
-    c.stroke();
+    c.lineWidth = this.unit * (this.recording.movesInk ? 1.6 : 1);
+    for (const stroke of this.recording.ink) {
+      c.save();
+      if (stroke.body >= 0) {
+        const [x, y, angle] = this.recording.at(stroke.body, this.player.time);
+        c.translate(x, y);
+        c.rotate(angle);
+      }
+      c.beginPath();
+      this.path(stroke.points);
+      c.stroke();
+      c.restore();
+    }
   }
 
   path(points) {
@@ -69,14 +93,15 @@ class Stage {
     this.shape(body);
     c.fillStyle = body.fill;
     c.fill();
-    if (body.anchored) this.hatch(body);
+    if (body.anchored && !this.recording.movesInk) this.hatch(body);
     if (body.radius && !body.anchored) {
       c.moveTo(0, 0);
       c.lineTo(body.radius, 0);
     }
     c.strokeStyle = body.edge;
-    c.lineWidth = LINE * this.unit * (k === this.player.body ? 1.8 : 1);
-    c.stroke();
+    const chosen = k === this.player.body;
+    c.lineWidth = LINE * this.unit * (chosen ? 1.8 : 1);
+    if (!this.recording.movesInk || chosen) c.stroke();
     c.restore();
   }
 
@@ -146,7 +171,7 @@ class Stage {
         if (i) c.lineTo(x, y);
         else c.moveTo(x, y);
       }
-      c.strokeStyle = body.fill;
+      c.strokeStyle = body.color;
       c.lineWidth = 1.6 * this.unit;
       c.stroke();
     });
