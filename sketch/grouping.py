@@ -78,18 +78,24 @@ def _near_ends(loose: list[Piece]) -> dict[tuple[int, int], list[tuple[float, in
 
 
 def crosses(page: Page) -> Iterator[tuple[int, ...]]:
-    """Strokes that may be an X by themselves, and pairs of nearly straight ones that overlap."""
+    """Strokes that may be an X by themselves, and pairs that overlap: of bars, or of a bar and one with hooks."""
     for p in page.pieces:
         if 1.6 * p.extent < p.length < 5 * p.extent:
             yield (p.index,)
-    bars = [p for p in page.pieces if p.length < 1.6 * p.extent and p.straight < 0.12]
+    bars = [p for p in page.pieces if p.length < 3 * p.extent]
     bars.sort(key=lambda p: p.box[0])
     for a, p in enumerate(bars):
         for q in bars[a + 1 :]:
             if q.box[0] > p.box[2]:
                 break
+            if not (_is_bar(p) or _is_bar(q)) or max(p.extent, q.extent) > 3 * min(p.extent, q.extent):
+                continue
             if p.box[1] <= q.box[3] and q.box[1] <= p.box[3]:
                 yield (p.index, q.index) if p.index < q.index else (q.index, p.index)
+
+
+def _is_bar(p: Piece) -> bool:
+    return p.length < 1.6 * p.extent and p.straight < 0.12
 
 
 def arrow_groups(page: Page) -> Iterator[tuple[tuple[int, ...], Point, Point]]:

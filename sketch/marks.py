@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import combinations, pairwise
 
 import numpy as np
 
-from sketch.kernel import fit_arrow
+from sketch.kernel import fit_arrow, off_outline
+from sketch.outlines import RETRACE
 from sketch.pieces import Page, Piece, Point
-from sketch.scoring import FREE, PARAMETER, Fitted, misfit_of
+from sketch.scoring import FREE, PARAMETER, Fitted, misfit_of, unread
 
-__all__ = ["read_arrow", "read_bar", "read_cross"]
+__all__ = ["read_arrow", "read_bar", "read_cross", "with_strays"]
 
 MOST_BENDS = 5
 BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
+STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
 RARE = 15.0  # nats that an open line is rarer than an outline
 
 Vertex = list[float]
@@ -36,33 +40,32 @@ def read_bar(piece: Piece) -> Fitted | None:
 
 def _folds(v: list[Vertex]) -> int:
     """How many corners turn by more than 115 degrees: a bar seldom runs back along itself."""
-    sides = [complex(b[0] - a[0], b[1] - a[1]) for a, b in zip(v, v[1:], strict=False)]
-    return sum(
-        (b * a.conjugate()).real < -0.42 * abs(a) * abs(b) for a, b in zip(sides, sides[1:], strict=False)
-    )
+    sides = [complex(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(v)]
+    return sum((b * a.conjugate()).real < -0.42 * abs(a) * abs(b) for a, b in pairwise(sides))
 
 
 def read_cross(page: Page, names: tuple[int, ...]) -> Fitted | None:
-    """An X: two bars that cross near their middles; in one stroke, further ink joins them."""
-    if len(names) == 2:
-        p, q = (page.pieces[i] for i in names)
-        a, b = p.vertices[1][:2]
-        c, d = q.vertices[1][:2]
-        return _cross(a, b, c, d, names, misfit_of(p, p.residual[1]) + misfit_of(q, q.residual[1]))
-    piece = page.pieces[names[0]]
+    """An X: two bars that cross near their middles; where the pen went on, further ink joins them."""
+    parts = [page.pieces[i] for i in names]
+    length = sum(p.length for p in parts)
+    count = sum(p.observations for p in parts)
     best = None
-    for k in (3, 4, 5):
-        v = piece.vertices[k]
-        lengths = [math.dist(a, b) for a, b in zip(v[:k], v[1 : k + 1], strict=True)]
-        off = misfit_of(piece, piece.residual[k])
-        for i in range(k - 2):
-            for j in range(i + 2, k):
-                joining = 1 - (lengths[i] + lengths[j]) / piece.length
-                # a third of the ink is what one side takes to join the bars
-                extra = PARAMETER + FREE * piece.observations * max(joining - 0.35, 0.0)
-                found = _cross(v[i], v[i + 1], v[j], v[j + 1], names, off + extra)
-                if found is not None and (best is None or found.cost < best.cost):
-                    best = found
+    for bends in ((3,), (4,), (5,)) if len(parts) == 1 else ((1, 1), (1, 2), (2, 1), (1, 3), (3, 1), (2, 2)):
+        sides = [
+            (part, k, a, b)
+            for part, (p, n) in enumerate(zip(parts, bends, strict=True))
+            for k, (a, b) in enumerate(pairwise(p.vertices[n][: n + 1]))
+        ]
+        off = sum(misfit_of(p, p.residual[n]) for p, n in zip(parts, bends, strict=True))
+        for (part, k, a, b), (other, m, c, d) in combinations(sides, 2):
+            if part == other and (m < k + 2 or len(parts) == 2):
+                continue
+            joining = 1 - (math.dist(a, b) + math.dist(c, d)) / length
+            # a third of the ink is what one side takes to join the bars
+            extra = PARAMETER + FREE * count * max(joining - 0.35, 0.0) if len(sides) > 2 else 0.0
+            found = _cross(a, b, c, d, names, off + extra)
+            if found is not None and (best is None or found.cost < best.cost):
+                best = found
     return best
 
 
@@ -76,7 +79,8 @@ def _cross(a: Vertex, b: Vertex, c: Vertex, d: Vertex, names: tuple[int, ...], o
         return None
     centred = ((t - 0.5) ** 2 + (s - 0.5) ** 2) / (2 * 0.12**2)
     alike = 0.5 * (math.log(p / q) / 0.3) ** 2
-    return Fitted("cross", names, 6 * PARAMETER + off + centred + alike, np.array([a, b, c, d]))
+    cost = 6 * PARAMETER + off + centred + alike
+    return Fitted("cross", names, cost, np.array([a, b, c, d]), figure=np.array([a, b, d, a, c, b, c, d, c]))
 
 
 def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -> Fitted | None:
@@ -86,8 +90,9 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
     if fit is None:
         return None
     shaft, left, right = fit.lengths
-    whole = 0.55 * shaft if len(pieces) == 1 else None  # its ends may meet, yet it is no loop
-    off = sum(misfit_of(p, square, whole) for p, square in zip(pieces, fit.off, strict=True))
+    # a stroke whose ends meet, as where a barb was drawn forth and back, is no loop
+    whole = [0.55 * shaft] if len(pieces) == 1 else [p.extent / 2 for p in pieces]
+    off = sum(misfit_of(p, square, scale) for p, square, scale in zip(pieces, fit.off, whole, strict=True))
     drawn = sum(p.length for p in pieces)
     twice = max(1 - (shaft + left + right) / drawn, 0.0)  # the share of the ink that was drawn twice
     again = FREE * twice * sum(p.observations for p in pieces)
@@ -96,4 +101,30 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
     size = (math.log((left + right) / 2 / shaft / 0.45) / 0.4) ** 2
     spread = sum(((angle - 0.6) / 0.25) ** 2 for angle in fit.angles)
     cost = 6 * PARAMETER + off + again + 0.5 * (alike + size + spread)
-    return Fitted("arrow", tuple(sorted(names)), cost, np.array([tail, fit.head[0].tolist()]))
+    tip, left, right = fit.head.tolist()
+    figure = np.array([tail, tip, left, tip, right, tip])
+    return Fitted("arrow", tuple(sorted(names)), cost, np.array([tail, tip]), figure=figure)
+
+
+def with_strays(page: Page, mark: Fitted) -> list[Fitted]:
+    """A cross or an arrow together with smaller ink along it: a side that joins its bars, a barb drawn twice."""
+    if mark.figure is None:
+        return []
+    low, high = mark.figure.min(axis=0), mark.figure.max(axis=0)
+    reach = STRAY * math.dist(low, high)
+    (x0, y0), (x1, y1) = (low - reach).tolist(), (high + reach).tolist()
+    costs: dict[int, float] = {}
+    for p in page.pieces:
+        if p.index in mark.pieces or p.box[0] < x0 or p.box[1] < y0 or p.box[2] > x1 or p.box[3] > y1:
+            continue
+        off = off_outline(page.strokes, p.stroke, mark.figure)
+        cost = PARAMETER + RETRACE * p.observations + misfit_of(p, off, p.extent / 2)
+        if cost < unread(p):
+            costs[p.index] = cost
+    sets = [tuple(costs), *((j,) for j in costs)] if len(costs) > 1 else [tuple(costs)] if costs else []
+    return [
+        replace(
+            mark, pieces=tuple(sorted((*mark.pieces, *more))), cost=mark.cost + sum(costs[j] for j in more)
+        )
+        for more in sets
+    ]

@@ -17,7 +17,7 @@ from sketch.context import with_context
 from sketch.grouping import arrow_groups, closing_chains, crosses
 from sketch.ink import Sketch
 from sketch.interpret import interpret
-from sketch.marks import read_arrow, read_bar, read_cross
+from sketch.marks import read_arrow, read_bar, read_cross, with_strays
 from sketch.outlines import gone_over, read_outline
 from sketch.pieces import Page, page_of
 from sketch.reading import Reading
@@ -85,12 +85,14 @@ def read_groups(page: Page) -> list[Fitted]:
     for p in page.pieces:
         out += _kept(read_bar(p))
     for names in crosses(page):
-        out += _kept(read_cross(page, names))
+        for cross in _kept(read_cross(page, names)):
+            out += [cross, *with_strays(page, cross)]
     arrows: dict[tuple[int, ...], Fitted] = {}
     for names, tail, toward in arrow_groups(page):
         arrow = read_arrow(page, names, tail, toward)
-        if arrow and (arrow.pieces not in arrows or arrow.cost < arrows[arrow.pieces].cost):
-            arrows[arrow.pieces] = arrow
+        for mark in [arrow, *with_strays(page, arrow)] if arrow else []:
+            if mark.pieces not in arrows or mark.cost < arrows[mark.pieces].cost:
+                arrows[mark.pieces] = mark
     out += arrows.values()
     return out
 

@@ -39,6 +39,7 @@ class Fitted:
         cost: description length [nats].
         outline: [pixels], as in `sketch.reading.Reading`.
         scale: of a closed outline: the geometric mean of its half axes [pixels].
+        figure: of a cross or an arrow: a closed polygon along all that may be drawn of it [pixels], (n, 2).
     """
 
     kind: str
@@ -46,6 +47,7 @@ class Fitted:
     cost: float
     outline: Array
     scale: float = 0.0
+    figure: Array | None = None
 
     @property
     def closed(self) -> bool:
