@@ -16,7 +16,7 @@ from sim.trajectory import Event, Trajectory
 
 __all__ = ["simulate"]
 
-ABI = 2
+ABI = 3
 MAX_SAMPLES = 10_000_000
 MAX_VALUES = 500_000_000  # 4 GB of samples
 DEFAULT_TOLERANCE = 1e-4
@@ -188,7 +188,7 @@ def _run(core: ctypes.CDLL, scene: Scene, samples: int, fps: float, tolerance: f
     packed, parts = _pack(scene)
     n = len(scene.bodies)
     frames = np.empty((samples, n, 6))
-    energy = np.empty((samples, 2))
+    energy = np.empty((samples, 3))
     sim = core.sim_create(ctypes.byref(packed))
     del parts
     if not sim:
@@ -210,7 +210,7 @@ def _run(core: ctypes.CDLL, scene: Scene, samples: int, fps: float, tolerance: f
         velocities=frames[:, :, 3:5],
         angular_velocities=frames[:, :, 5],
         body_ids=ids,
-        energy=np.column_stack([energy, energy.sum(1)]),
+        energy=energy,
         events=events,
         profile={name: getattr(profile, name) for name in _PROFILE},
     )

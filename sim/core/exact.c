@@ -88,6 +88,12 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     double to = fmin(e->end, fmin(ta->motion.end, tb->motion.end));
     if (a != 0) to = fmin(to, fmax(ta->touch_time, b != 0 ? tb->touch_time : 0)); /* later ones are asked for again */
     if (to <= from) return;
+    if (a != 0 && b != 0) { /* most pairs are too far apart to need a closer look */
+        double ways = motion_way(&ta->motion, from, to) + motion_way(&tb->motion, from, to);
+        double reach = e->world->body[a].reach + e->world->body[b].reach + ways;
+        Vec apart = vsub(motion_position(&ta->motion, from), motion_position(&tb->motion, from));
+        if (vdot(apart, apart) > reach * reach) return;
+    }
     int32_t closed = closed_features(e, a, b);
     Mover ma = {a, &ta->motion}, mb = {b, &tb->motion};
     e->world->profile.pairs += 1;

@@ -40,6 +40,19 @@ State motion_state(const Motion *m, double time) {
                    vec(horner(m->v[0], d, x), horner(m->v[1], d, x)), horner(m->v[2], d, x)};
 }
 
+Vec motion_position(const Motion *m, double time) {
+    double x = (time - m->start) / m->span;
+    return vec(horner(m->q[0], m->degree, x), horner(m->q[1], m->degree, x));
+}
+
+double motion_way(const Motion *m, double from, double to) {
+    if (m->degree == 0) return 0;
+    if (m->degree > 2) return m->speed * (to - from);
+    double x = (from - m->start) / m->span;
+    Vec v = vec(m->v[0][0] + m->v[0][1] * x, m->v[1][0] + m->v[1][1] * x), a = vec(m->v[0][1], m->v[1][1]);
+    return vlength(vmad(v, (to - from) / 2, a)) * (to - from) + vlength(a) * (to - from) * (to - from) / 8;
+}
+
 /* The largest |value| and |slope| of a polynomial for arguments in [0, x]: sums of the coefficients' sizes. */
 static void polynomial_bound(const double *c, int degree, double x, double *value, double *slope) {
     double power = 1;

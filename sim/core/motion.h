@@ -22,6 +22,7 @@ typedef struct Motion {
     double start, end; /* [s]; end is INFINITY for flight and rest */
     double span;       /* the polynomials' argument is (t - start) / span */
     int degree;
+    double speed;      /* at most, of a motion of degree above 2 [m/s] */
     double q[3][MOTION_DEGREE + 1]; /* x, y, angle */
     double v[3][MOTION_DEGREE + 1]; /* vx, vy, spin */
 } Motion;
@@ -40,6 +41,10 @@ Motion motion_at_rest(const State *state, double time);
 Motion motion_in_flight(const State *state, double time, Vec gravity);
 
 State motion_state(const Motion *motion, double time);
+Vec motion_position(const Motion *motion, double time);
+
+/* How far the body goes at most from one time to another [m]. */
+double motion_way(const Motion *motion, double from, double to);
 MotionBound motion_bound(const Motion *motion, double from, double to);
 
 #endif

@@ -96,7 +96,11 @@ static int absorb(Sim *sim, double from, double to) {
 /* Step the crowd from `from` to `to`, but not the bodies that entered it at `to`. */
 static int step_crowd(Sim *sim, double from, double to, double tolerance) {
     World *world = &sim->world;
-    if (!sim->crowd && !(sim->crowd = crowd_create(world))) return SIM_OUT_OF_MEMORY;
+    if (!sim->crowd) {
+        int status = world->piece ? SIM_OK : world_decompose(world);
+        if (status != SIM_OK) return status;
+        if (!(sim->crowd = crowd_create(world))) return SIM_OUT_OF_MEMORY;
+    }
     for (int32_t i = 1; i < world->body_count; i++)
         if (sim->entering[i]) world->body[i].mode = MODE_SMOOTH;
     double start = seconds_now();
@@ -164,18 +168,30 @@ static bool find_energy(const Sim *sim, int64_t samples, const double *frames, d
             potential -= m * (world->gravity.x * frames[0] + world->gravity.y * frames[1]);
             finite = finite && isfinite(frames[0]) && isfinite(frames[1]) && isfinite(frames[2]);
         }
-        energy[2 * k] = kinetic;
-        energy[2 * k + 1] = potential;
+        energy[3 * k] = kinetic;
+        energy[3 * k + 1] = potential;
+        energy[3 * k + 2] = kinetic + potential;
     }
     return finite;
+}
+
+#define LOOKED_AT_ALL 64 /* bodies, pair by pair */
+
+/* Whether something may have been drawn overlapping: few bodies are looked at, of many it is taken to be so. */
+static bool may_overlap(const World *world) {
+    if (world->body_count > LOOKED_AT_ALL) return true;
+    for (int32_t i = 1; i < world->body_count; i++)
+        for (int32_t j = 0; j < i; j++)
+            if (!surely_apart(world, i, j, 1e-10 * world->size)) return true;
+    return false;
 }
 
 int32_t sim_run(Sim *sim, const SimOptions *options, double *frames, double *energy) {
     World *world = &sim->world;
     double start = seconds_now(), end = (double)(options->sample_count - 1) / options->fps;
     int status = SIM_OK;
-    if (world->shape_count > 1) status = world_decompose(world);
-    if (status == SIM_OK && world->shape_count > 1) status = world_separate(world, options->tolerance);
+    if (may_overlap(world)) status = world_decompose(world);
+    if (status == SIM_OK && world->piece) status = world_separate(world, options->tolerance);
     double separated = seconds_now();
     if (status == SIM_OK) status = recorder_create(&sim->recorder, world, options, frames);
     if (status == SIM_OK) status = exact_create(&sim->exact, world, &sim->recorder, options->tolerance, end);

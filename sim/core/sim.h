@@ -19,7 +19,7 @@
 #define SIM_API __attribute__((visibility("default")))
 #endif
 
-#define SIM_ABI 2 /* goes up with any change below; the caller compares it and sim_struct_size() */
+#define SIM_ABI 3 /* goes up with any change below; the caller compares it and sim_struct_size() */
 
 enum { SIM_OK = 0, SIM_OUT_OF_MEMORY = 1, SIM_BAD_INPUT = 2, SIM_NOT_FINITE = 3 };
 
@@ -91,8 +91,8 @@ SIM_API size_t sim_struct_size(int32_t which); /* 0 SimBody, 1 SimInput, 2 SimOp
 /* NULL when out of memory. The input is copied. */
 SIM_API Sim *sim_create(const SimInput *input);
 
-/* frames: sample_count x body_count x 6 doubles (x, y, angle, vx, vy, spin); energy: sample_count x 2 (kinetic,
- * potential). Returns SIM_OK or the kind of failure, which sim_error() describes. */
+/* frames: sample_count x body_count x 6 doubles (x, y, angle, vx, vy, spin); energy: sample_count x 3 (kinetic,
+ * potential, sum). Returns SIM_OK or the kind of failure, which sim_error() describes. */
 SIM_API int32_t sim_run(Sim *sim, const SimOptions *options, double *frames, double *energy);
 
 SIM_API const char *sim_error(const Sim *sim);

@@ -481,6 +481,7 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
             dense(s, 6 * i + c, step, m->q[c]);
             dense(s, 6 * i + 3 + c, step, m->v[c]);
         }
+        m->speed = motion_bound(m, from, from + step).speed;
     }
     *ended = unsure;
     if (margin < 0) {

@@ -297,3 +297,44 @@ bool too_deep(const World *world, int32_t body_a, int32_t body_b, const Slack *s
         }
     return false;
 }
+
+/* ---------------------------------------------------------------- surely apart */
+
+/* Whether all of a is in front of one side of b, which is an outline that bulges everywhere. */
+static bool in_front_of_a_side(const World *world, const Shape *a, Pose at_a, const Shape *b, Pose at_b,
+                               double rounding) {
+    const Vec *v = &world->vertex[b->first];
+    const Side *side = &world->side[b->first];
+    for (int32_t j = 0; j < b->count && b->count > 1; j++) {
+        Vec outward = vec(side[j].along.y, -side[j].along.x);
+        double least = INFINITY;
+        for (int32_t i = 0; i < a->count && least >= -rounding; i++) {
+            Vec point = unplace(at_b, place(at_a, world->vertex[a->first + i]));
+            least = fmin(least, vdot(vsub(point, v[j]), outward) - a->radius);
+        }
+        if (least >= -rounding) return true;
+    }
+    return false;
+}
+
+bool surely_apart(const World *world, int32_t body_a, int32_t body_b, double rounding) {
+    const Body *a = &world->body[body_a], *b = &world->body[body_b];
+    Pose at_a = body_pose(a), at_b = body_pose(b);
+    for (int32_t i = a->first_shape; i < a->first_shape + a->shape_count; i++)
+        for (int32_t j = b->first_shape; j < b->first_shape + b->shape_count; j++) {
+            const Shape *sa = &world->shape[i], *sb = &world->shape[j];
+            Vec apart = vsub(place(at_a, sa->centre), place(at_b, sb->centre));
+            if (vlength(apart) >= sa->reach + sb->reach || !world_collides(world, i, j)) continue;
+            bool round_a = sa->count == 1, round_b = sb->count == 1;
+            if (round_a && !round_b &&
+                depth_in(world, sb, unplace(at_b, place(at_a, sa->centre)), sa->radius) <= rounding)
+                continue;
+            if (round_b && !round_a &&
+                depth_in(world, sa, unplace(at_a, place(at_b, sb->centre)), sb->radius) <= rounding)
+                continue;
+            if (in_front_of_a_side(world, sa, at_a, sb, at_b, rounding)) continue;
+            if (in_front_of_a_side(world, sb, at_b, sa, at_a, rounding)) continue;
+            return false;
+        }
+    return true;
+}

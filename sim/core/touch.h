@@ -34,6 +34,9 @@ double first_touch(const World *world, Mover a, Mover b, double from, double to,
 int32_t touching_now(const World *world, int32_t body_a, const State *a, int32_t body_b, const State *b,
                      const Slack *slack, Touching *out, int32_t capacity);
 
+/* Whether two bodies surely do not overlap by more than `rounding`: some side of theirs, or their circles, keep them apart. */
+bool surely_apart(const World *world, int32_t body_a, int32_t body_b, double rounding);
+
 /* Whether two bodies overlap farther than what is still held as a contact. */
 bool too_deep(const World *world, int32_t body_a, int32_t body_b, const Slack *slack);
 
