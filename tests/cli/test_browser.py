@@ -224,7 +224,7 @@ def test_the_page_needs_nothing_else(scene_file: Path, browse: Browse) -> None:
     assert "http" not in html
 
 
-@pytest.mark.parametrize("ending", ["mp4"])
+@pytest.mark.parametrize("ending", ["mp4", "webm"])
 def test_the_video_plays_seeks_and_ends_in_a_browser(scene_file: Path, browse: Browse, ending: str) -> None:
     """At rest after the ball has left: the frames get longer, and the video lasts as long as it should."""
     out = scene_file.parent / f"run.{ending}"
