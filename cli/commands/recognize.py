@@ -76,7 +76,8 @@ def explanation(recognition: Recognition) -> str:
     lines = []
     for reading in recognition.readings:
         strokes = ", ".join(str(k) for k in reading.strokes)
-        line = f"{reading.kind:<10} {reading.score:4.0%}   strokes {strokes}"
+        score = "" if reading.kind == "unread" else f"{reading.score:.0%}"
+        line = f"{reading.kind:<10} {score:>4}   strokes {strokes}"
         if reading.alternatives:
             line += "   or " + ", ".join(f"{kind} {score:.0%}" for kind, score in reading.alternatives[:3])
         lines.append(line)

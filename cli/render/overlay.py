@@ -42,11 +42,11 @@ def overlay(recognition: Recognition) -> Canvas:
     page.ink([stroke.points for stroke in sketch.strokes], (120, 126, 138))
     bodies = 0
     labels: list[tuple[Array, str, RGB]] = []
-    for reading in recognition.readings:
+    for reading in sorted(recognition.readings, key=lambda reading: reading.kind == "unread"):  # on top
         color = _color(reading, bodies)
         bodies += reading.kind in BODIES
         _draw_reading(page, reading, color, [sketch.strokes[k].points for k in reading.strokes])
-        labels.append((_label_at(reading, sketch.strokes), f"{reading.kind} {reading.score:.0%}", color))
+        labels.append((_label_at(reading, sketch.strokes), _name(reading), color))
     for at, text, color in labels:  # last, so that no outline crosses a name
         page.label(at, text, color)
     return canvas
@@ -79,6 +79,10 @@ def _draw_reading(page: _Page, reading: Reading, color: RGB, strokes: list[Array
         page.arrow(v[0], v[1], color)
     else:
         page.ink(strokes, color, width=2)
+
+
+def _name(reading: Reading) -> str:
+    return reading.kind if reading.kind == "unread" else f"{reading.kind} {reading.score:.0%}"
 
 
 def _label_at(reading: Reading, strokes: list[Stroke]) -> Array:
