@@ -149,6 +149,7 @@ int island_advance(Exact *e, int32_t index, double from) {
     Island *island = &e->island[index];
     double start = seconds_now();
     int status = load_part(e, island, from);
+    e->smooth.relax = island->relax;
     if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
     double left = 0;
     if (status == SIM_OK) status = smooth_project(&e->smooth, &e->part, &left);
@@ -157,6 +158,7 @@ int island_advance(Exact *e, int32_t index, double from) {
         status = smooth_step(&e->smooth, &e->part, from, fmax(e->end, from + 1e-9), &island->step, e->motion,
                              &island->ended);
     island->ended = island->ended || island->jammed;
+    island->relax = e->smooth.relax;
     for (int32_t k = 0; k < island->contact_count; k++) island->contact[k] = e->part.contact[k];
     for (int32_t k = 0; k < island->member_count; k++) {
         Track *track = &e->track[island->member[k]];

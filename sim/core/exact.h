@@ -16,6 +16,7 @@ typedef struct Island {
     int32_t *member;
     Contact *contact;
     double step; /* length to try next [s] */
+    double relax; /* of its redundant rows */
     bool ended;  /* the modes of its contacts end with its present motion */
     bool jammed;  /* its constraints cannot be met: it goes to the crowd */
     bool in_use;

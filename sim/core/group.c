@@ -156,6 +156,7 @@ static int settle_low_lifts(Exact *e) {
         c->slide = fabs(slip) > e->slack.speed ? 1 : 0;
     }
     if (!any) return SIM_OK;
+    e->smooth.relax = 0;
     int status = smooth_prepare(&e->smooth, g);
     return status == SIM_OK ? smooth_project_velocities(&e->smooth, g) : status;
 }
@@ -228,6 +229,7 @@ static Island *new_island(Exact *e, int32_t *index) {
     island->in_use = true;
     island->member_count = island->contact_count = 0;
     island->step = 0.05;
+    island->relax = 0;
     return island;
 }
 

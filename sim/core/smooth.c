@@ -5,6 +5,8 @@
 
 #define LOCAL 0.02            /* the part of the tolerance that one step may err by */
 #define RELAX 1e-10           /* makes redundant rows solvable; refinement takes its effect away again */
+#define RELAX_MORE 1e-7    /* the same where rows that nearly repeat each other keep a step from converging */
+#define PATIENCE 3         /* tries of a step before that is taken to be so */
 #define RELAX_PROJECTION 1e-6 /* the same for projection, which is iterated anyway */
 #define FARTHEST 20.0         /* times the error that is corrected: a correction goes no farther */
 #define DECISIVE 1e-9         /* how far past its limit a force is when its event is taken, of the forces about */
@@ -58,6 +60,7 @@ int smooth_prepare(Smooth *s, System *system) {
     int status = system_place(system);
     if (status == SIM_OK) status = reserve(s, system->row_count);
     if (status != SIM_OK) return status;
+    if (s->relax == 0) s->relax = RELAX;
     for (int32_t i = 0; i < system->row_count; i++) s->rank[i] = -2; /* does not hold */
     for (int32_t i = 0; i < 2 * system->joint_count; i++) s->rank[i] = -1;
     for (int32_t k = 0; k < system->contact_count; k++) {
@@ -165,8 +168,8 @@ static int accelerate(Smooth *s, System *system, double *out) {
     s->evals += 1;
     s->rows += s->active_count;
     memset(s->force, 0, (size_t)s->active_count * sizeof *s->force);
-    factor(s, system, RELAX);
-    for (int pass = 0; pass < 2; pass++) { /* the second pass takes away what RELAX left */
+    factor(s, system, s->relax);
+    for (int pass = 0; pass < 2; pass++) { /* the second pass takes away what relaxing left */
         for (int32_t i = 0; i < s->active_count; i++) s->residual[i] = -row_of(&system->row[s->active[i]], out);
         substitute(s);
         for (int32_t i = 0; i < s->active_count; i++) {
@@ -465,6 +468,7 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
         double factor = !isfinite(error) ? 0.2 : error > 0 ? 0.9 * pow(error, -1.0 / 8) : 8;
         *h = step * fmin(fmax(factor, 0.2), 8);
         if (error <= 1 || step < 1e-12) break;
+        if (tries == PATIENCE) s->relax = RELAX_MORE;
     }
     for (int32_t c = 0; c < n; c++) {
         double sum = 0;

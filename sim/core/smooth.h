@@ -13,6 +13,7 @@ typedef struct Smooth {
     double *matrix, *force, *residual;
     double *acceleration;
     double tolerance;
+    double relax; /* what makes redundant rows solvable: kept by the caller from step to step, 0 at first */
     Slack slack;
     double evals, rows; /* counted for the profile */
 } Smooth;
