@@ -229,7 +229,7 @@ def _small_circles(
                 pivots[reading] = (centre, pair)
             else:  # drawn twice
                 doubles.append(reading)
-        elif radius < SMALL / 2 * math.sqrt(areas[id(under[0][1])]):
+        elif radius < 0.4 * SMALL * math.sqrt(areas[id(under[0][1])]):
             pivots[reading] = (centre, [under[0][1]])
     return pivots, doubles
 

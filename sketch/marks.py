@@ -61,6 +61,8 @@ def read_cross(page: Page, names: tuple[int, ...]) -> Fitted | None:
             if part == other and (m < k + 2 or len(parts) == 2):
                 continue
             joining = 1 - (math.dist(a, b) + math.dist(c, d)) / length
+            if joining > 0.5:
+                continue
             # a third of the ink is what one side takes to join the bars
             extra = PARAMETER + FREE * count * max(joining - 0.35, 0.0) if len(sides) > 2 else 0.0
             found = _cross(a, b, c, d, names, off + extra)

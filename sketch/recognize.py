@@ -72,7 +72,7 @@ def read_groups(page: Page) -> list[Fitted]:
     for p in page.pieces:
         if p.gap < 0.2 * p.length:
             single[p.index] = read_outline(page, [(p.index, False)])
-            loop = p.scale > 0.2 * p.extent
+            loop = p.gap < 0.12 * p.length and p.scale > 0.2 * p.extent
             if loop or min(f.cost for f in single[p.index]) < 0.6 * unread(p):
                 complete.add(p.index)
     outlines = []

@@ -169,8 +169,8 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
     return sum / r->n;
 }
 
-/* A writer's precision goes with the size of what is drawn: where a part of the chain closes by itself, being off counts by
- * that part's own thickness. A little loop is no careless piece of something large. */
+/* A writer's precision goes with the size of what is drawn: being off counts by a part's own size, and where the part closes
+ * by itself, by its thickness. A little loop is no careless piece of something large. */
 static void own_scale(const double *z, const int32_t *part_end, int parts, double ink, double factor[SAMPLES])
 {
     double done = 0;
@@ -188,10 +188,13 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
             s[2] += w * (cy * cy + dy * dy / 12);
         }
         int e = part_end[p] - 1;
-        if (parts > 1 && l > 0 && hypot(z[2 * e] - z[2 * i], z[2 * e + 1] - z[2 * i + 1]) < 0.15 * l) {
+        if (parts > 1 && l > 0) {
             double xx = s[0] / l - m[0] * m[0] / (l * l), yy = s[2] / l - m[1] * m[1] / (l * l);
             double xy = s[1] / l - m[0] * m[1] / (l * l), half = 0.5 * (xx - yy);
-            f = 1 / fmin(fmax(2 * (0.5 * (xx + yy) - sqrt(half * half + xy * xy)), 1e-4), 1);
+            double size2 = 4 * (xx + yy); /* 1 for a side of a square */
+            if (hypot(z[2 * e] - z[2 * i], z[2 * e + 1] - z[2 * i + 1]) < 0.15 * l)
+                size2 = 2 * (0.5 * (xx + yy) - sqrt(half * half + xy * xy));
+            f = 1 / fmin(fmax(size2, 1e-4), 1);
         }
         done += l;
         for (; k < SAMPLES && (p + 1 == parts || (k + 0.5) * ink / SAMPLES <= done); k++)
