@@ -1,4 +1,5 @@
-"""What stands around a reading: told last, in nats, so that it decides between readings that are nearly equal."""
+"""What stands around a reading: told last, in nats, so that it decides between readings that are nearly
+equal."""
 
 from __future__ import annotations
 
@@ -14,7 +15,8 @@ __all__ = ["with_context"]
 
 Array = NDArray[np.float64]
 
-ANCHORS = 15.0  # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
+# nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
+ANCHORS = 15.0
 NO_BODY = 30.0  # nats that an X away from every body is unlikely: it would mean nothing
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
 DOT = 0.012  # of the page: nobody draws a smaller body
@@ -87,7 +89,8 @@ class _Bodies:
         mine = set(c.pieces)
         for x, y in (c.outline[0].tolist(), c.outline[-1].tolist()):
             for b in self.near(x, y, 0.1 * self.extent):
-                if extent < 0.5 * self.extent[b] and mine.isdisjoint(self.bodies[b].pieces):
-                    if abs(depth(x, y, self.bodies[b].outline)) < 0.1 * self.extent[b]:
-                        return True
+                large, other = self.extent[b], self.bodies[b]
+                touches = abs(depth(x, y, other.outline)) < 0.1 * large
+                if touches and extent < 0.5 * large and mine.isdisjoint(other.pieces):
+                    return True
         return False

@@ -55,7 +55,8 @@ def closing_chains(page: Page, complete: set[int]) -> list[Chain]:
 
 
 def _near_ends(loose: list[Piece]) -> dict[tuple[int, int], list[tuple[float, int, int]]]:
-    """For each end (piece, 0 or 1), the ends of other pieces close enough to go on to: distance, piece, end."""
+    """For each end (piece, 0 or 1), the ends of other pieces close enough to go on to: distance, piece,
+    end."""
     out: dict[tuple[int, int], list[tuple[float, int, int]]] = {}
     if len(loose) < 2:
         return out

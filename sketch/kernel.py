@@ -42,7 +42,8 @@ class Strokes(NamedTuple):
 
     Attributes:
         points: without repeats and hooks, (n, 2) [pixels].  ends: where each stroke's points end.
-        measure: (strokes, 8): length, box (4), distance of its ends, root mean square distance from the centroid,
+        measure: (strokes, 8): length, box (4), distance of its ends, root mean square distance from the
+        centroid,
             and across the longer axis [pixels].
         samples: (strokes, SAMPLES, 2), in equal steps of length.
         residual: (strokes, BENDS + 1): mean squared distance from its best k segments [pixels²].
@@ -153,7 +154,8 @@ def fit_closed(parts: list[Array], least_axis: float, cap: float, observations: 
 def fit_arrow(
     strokes: Strokes, names: tuple[int, ...], tail: tuple[float, float], toward: tuple[float, float]
 ) -> ArrowFit | None:
-    """Fit an arrow to strokes, given its tail and a point on its shaft [pixels]; None where they have no head."""
+    """Fit an arrow to strokes, given its tail and a point on its shaft [pixels]; None where they have no
+    head."""
     chosen = np.array(names, dtype=np.int32)
     inputs = np.array((*tail, *toward))
     out = np.empty(11 + len(names))

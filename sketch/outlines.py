@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,9 @@ Array = NDArray[np.float64]
 Chain = list[tuple[int, bool]]  # pieces that go once around, each with whether it was drawn the other way
 
 MOST_SIDES = 12
-ROUND = 36.0  # nats that a round outline is rarer than its three parameters say
+ROUND = 40.0  # nats that a round outline is rarer than its three parameters say
+CORNER = 4.0  # nats to say a corner's coordinate, given those before: less than a free parameter
+BOX = 20.0  # nats to say a rectangle: five parameters, and that it is the commonest thing drawn
 UNROUND = 0.085  # usual log of a drawn circle's length over its width: nobody's circles are round
 ELLIPSE = 11.0  # nats that an ellipse takes beyond a circle: two parameters, and that it is rarer
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.c
@@ -39,16 +42,16 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
     gaps = GAP * count * fit.gap / fit.ink
     b = fit.back
     scale = math.sqrt(abs(float(b[0, 0] * b[1, 1] - b[0, 1] * b[1, 0])))
-    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + 2 * k * PARAMETER)
-    polygon = Fitted(
-        "polygon", names, fit.cost[sides] + 2 * sides * PARAMETER + gaps, fit.vertices(sides), scale
-    )
-    out = [*_round(fit, names, gaps, scale), polygon]
-    box = _rectangle(fit)
+    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + 2 * k * CORNER)
+    out = _round(fit, names, gaps, scale)
+    if math.isfinite(fit.cost[sides]):
+        cost = fit.cost[sides] + 2 * sides * CORNER + gaps
+        out.append(Fitted("polygon", names, cost, fit.vertices(sides), scale))
+    box = _rectangle(fit) if math.isfinite(fit.cost[4]) else None
     if box is not None:
         corners, extra = box
         off = fit.residual[4]
-        cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + 5 * PARAMETER + gaps
+        cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + BOX + gaps
         out.append(Fitted("rectangle", names, cost, corners, scale))
     return out
 
@@ -56,7 +59,8 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
 def gone_over(page: Page, fitted: Fitted, index: int) -> float:
     """Nats to say a further piece of ink, given that it runs along a closed outline that is there already.
 
-    Sides are drawn twice, in pieces that overlap, or gone over once more.  Infinite where the piece lies elsewhere.
+    Sides are drawn twice, in pieces that overlap, or gone over once more. Infinite where the piece lies
+    elsewhere.
     """
     piece = page.pieces[index]
     scale = min(fitted.scale, max(piece.scale, 1e-9))
@@ -89,10 +93,11 @@ def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float, scale: float) ->
 
 
 def _rectangle(fit: ClosedFit) -> tuple[Array, float] | None:
-    """The rectangle nearest to the best quadrilateral, and the mean squared distance that it adds, in the frame.
+    """The rectangle nearest to the best quadrilateral, and the mean squared distance that it adds, in the
+    frame.
 
-    Its direction is the sides' mean, modulo a right angle, weighted by their lengths; its sides go through the middles
-    of the quadrilateral's.
+    Its direction is the sides' mean, modulo a right angle, weighted by their lengths; its sides go through
+    the middles of the quadrilateral's.
     """
     corners = [complex(x, y) for x, y in fit.vertices(4).tolist()]
     sides = [b - a for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
@@ -119,9 +124,11 @@ def _rectangle(fit: ClosedFit) -> tuple[Array, float] | None:
         normal = 1j * edge / max(abs(edge), 1e-9)
         p, q = (normal.conjugate() * off[k]).real, (normal.conjugate() * off[(k + 1) % 4]).real
         extra += (p * p + p * q + q * q) / 12
+    if not extra < 1:
+        return None
     return np.array([[b.real, b.imag] for b in box]), extra
 
 
-def _in_frame(to: Array, points: list[complex]) -> list[complex]:
+def _in_frame(to: NDArray[np.floating[Any]], points: list[complex]) -> list[complex]:
     (a, b), (c, d) = to.tolist()
     return [complex(a * p.real + b * p.imag, c * p.real + d * p.imag) for p in points]

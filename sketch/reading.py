@@ -21,6 +21,8 @@ class Reading:
         outline: [pixels], y down, shape (n, 2); closed for bodies and pivots.  An anchor's is its two bars
             end to end (4 points), the arrow's is tail and head (2 points).
         alternatives: other kinds that the same ink was scored as, with their scores, best first.
+        gain: what the reading saves against saying the ink freely [nats].
+        forced: the kind that the caller said it is, or None.
     """
 
     kind: str
@@ -28,3 +30,16 @@ class Reading:
     score: float
     outline: NDArray[np.float64]
     alternatives: list[tuple[str, float]] = field(default_factory=list)
+    gain: float = 0.0
+    forced: str | None = None
+
+    @property
+    def solid(self) -> bool:
+        """Whether it is a body."""
+        return self.kind in ("circle", "rectangle", "polygon", "bar")
+
+    @property
+    def named(self) -> str:
+        """Its strokes, as a note names them."""
+        numbers = ", ".join(map(str, self.strokes))
+        return f"stroke {numbers}" if len(self.strokes) == 1 else f"strokes {numbers}"

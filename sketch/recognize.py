@@ -1,24 +1,28 @@
 """Ink → scene: readings of groups of strokes, scored, and the set of them that explains all the ink best.
 
-What is optimized: the length of a description of the page.  Every reading of a group of ink says what the ink is in
-fewer nats than saying the ink itself, point by point; that saving is its gain (`sketch.scoring`).  The answer is the
-set of readings, each piece of ink in at most one, with the greatest total gain, found exactly (`sketch.search`): no
-other set of the readings at hand describes the page in fewer nats.  It is found twice: first from the ink alone, then
-with what the bodies of the first answer say about the marks on and around them (`sketch.context`).
+What is optimized: the length of a description of the page. Every reading of a group of ink says what the
+ink is in fewer nats than saying the ink itself, point by point; that saving is its gain (`sketch.scoring`).
+The answer is the set of readings, each piece of ink in at most one, with the greatest total gain, found
+exactly (`sketch.search`): no other set of the readings at hand describes the page in fewer nats. It is
+found twice: first from the ink alone, then with what the bodies of the first answer say about the marks on
+and around them (`sketch.context`).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from sim.scene import Scene
 from sketch.context import with_context
+from sketch.explain import explain
 from sketch.grouping import arrow_groups, closing_chains, crosses
 from sketch.ink import Sketch
 from sketch.interpret import interpret
 from sketch.marks import read_arrow, read_bar, read_cross, with_strays
 from sketch.outlines import gone_over, read_outline
+from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page, page_of
 from sketch.reading import Reading
 from sketch.scoring import Fitted, unread
@@ -30,6 +34,9 @@ SAME_PLACE = 60.0  # nats that an outline around another's place is the same bod
 KINDS = {"ellipse": "polygon", "cross": "anchor", "arrow": "gravity"}
 
 
+FORCED = 1e6  # nats that a reading gains by having been said by the caller
+
+
 @dataclass(frozen=True, eq=False)
 class Recognition:
     """A sketch as it was understood: the scene and the readings that it was made from."""
@@ -38,9 +45,17 @@ class Recognition:
     scene: Scene
     readings: list[Reading]
 
+    def explain(self) -> str:
+        """A person's account: each reading, from which strokes, why this and not the next."""
+        return explain(self)
+
 
 def recognize(
-    sketch: Sketch, *, scale: float | None = None, gravity: tuple[float, float] | None = None
+    sketch: Sketch,
+    *,
+    scale: float | None = None,
+    gravity: tuple[float, float] | None = None,
+    overrides: Mapping[int | tuple[int, ...], str] | None = None,
 ) -> Recognition:
     """Read a sketch.
 
@@ -48,18 +63,42 @@ def recognize(
         sketch: the ink.
         scale: [pixels per metre], overriding the sketch's own.
         gravity: [m/s²], y up, overriding the arrow's.
+        overrides: what some strokes are, as ``{(3, 4): "anchor", 7: "ball", 9: "ignore"}``: one of
+            `sketch.overrides.KINDS`; the rest is read around them.
     """
+    forced = normal_overrides(overrides, len(sketch.strokes))
     page = page_of(sketch)
     candidates = read_groups(page)
     free = [unread(p) for p in page.pieces]
     gains = [sum(free[i] for i in c.pieces) - c.cost for c in candidates]
+    if forced:
+        candidates, gains = _with_forced(page, candidates, gains, forced)
     likely = _best(candidates, gains)
     gains = with_context(candidates, gains, likely, page.size)
     readings = _readings(page, candidates, gains, _best(candidates, gains))
     read = {s for r in readings for s in r.strokes}
-    left = [Reading("unread", (i,), 0.0, s.points) for i, s in enumerate(sketch.strokes) if i not in read]
-    scene, readings = interpret(sketch, readings + left, scale, gravity)
+    for i, stroke in enumerate(sketch.strokes):
+        if i not in read:
+            readings.append(Reading("unread", (i,), 0.0, stroke.points))
+    for reading in readings:
+        reading.forced = forced.get(reading.strokes)
+    for strokes, kind in forced.items():
+        for reading in readings:
+            if kind == "ignore" and reading.kind == "unread" and reading.strokes[0] in strokes:
+                reading.forced = kind
+    scene = interpret(sketch, readings, scale, gravity)
     return Recognition(sketch, scene, readings)
+
+
+def _with_forced(
+    page: Page, candidates: list[Fitted], gains: list[float], forced: Overrides
+) -> tuple[list[Fitted], list[float]]:
+    """The candidates that leave the forced strokes alone, and the forced readings."""
+    taken = {s for strokes in forced for s in strokes}
+    free = [k for k, c in enumerate(candidates) if not any(page.pieces[i].stroke in taken for i in c.pieces)]
+    found = [forced_reading(page, strokes, kind) for strokes, kind in forced.items()]
+    extra = [f for f in found if f is not None]
+    return [candidates[k] for k in free] + extra, [gains[k] for k in free] + [FORCED] * len(extra)
 
 
 # ---------------------------------------------------------------- candidates
@@ -137,7 +176,8 @@ def _best(candidates: list[Fitted], gains: list[float]) -> list[int]:
 
 
 def _readings(page: Page, candidates: list[Fitted], gains: list[float], chosen: list[int]) -> list[Reading]:
-    """The chosen candidates, each with the other readings of the same ink as probabilities, in order of drawing."""
+    """The chosen candidates, each with the other readings of the same ink as probabilities, in order of
+    drawing."""
     same: dict[tuple[int, ...], list[int]] = {}
     for k, c in enumerate(candidates):
         same.setdefault(c.pieces, []).append(k)
@@ -153,5 +193,5 @@ def _readings(page: Page, candidates: list[Fitted], gains: list[float], chosen: 
         kind = KINDS.get(c.kind, c.kind)
         others = sorted(((n, w / total) for n, w in weight.items() if n != kind), key=lambda t: -t[1])
         strokes = tuple(sorted({page.pieces[i].stroke for i in c.pieces}))
-        readings.append(Reading(kind, strokes, weight[kind] / total, c.outline, others))
+        readings.append(Reading(kind, strokes, weight[kind] / total, c.outline, others, gains[k]))
     return sorted(readings, key=lambda r: r.strokes)

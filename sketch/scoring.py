@@ -1,11 +1,11 @@
 """The one scale on which every reading is scored: the length of a description, in nats (Rissanen 1978).
 
-A reading's cost is what it takes to say what was meant (its parameters, and how rare such a thing is), plus what it
-then takes to say where the ink is, given that.  Ink that means nothing is said freely, point by point.  What a reading
-gains is what it saves against that.
+A reading's cost is what it takes to say what was meant (its parameters, and how rare such a thing is), plus
+what it then takes to say where the ink is, given that. Ink that means nothing is said freely, point by
+point. What a reading gains is what it saves against that.
 
-The constants were fitted on drawings of one half of some writers and checked on the other half; each has a meaning,
-and the results change little when one is changed by a fifth.
+The constants were fitted on drawings of one half of some writers and checked on the other half; each has a
+meaning, and the results change little when one is changed by a fifth.
 """
 
 from __future__ import annotations
@@ -60,7 +60,8 @@ def unread(piece: Piece) -> float:
 
 
 def misfit(mean_square: float, count: float) -> float:
-    """Nats to say `count` observations, given a primitive that they are off by `mean_square` [shares of the radius].
+    """Nats to say `count` observations, given a primitive that they are off by `mean_square` [shares of the
+    radius].
 
     Student's t for a tremor that is unknown but about TREMOR, and a normal prior on how careless people are.
     """
@@ -70,7 +71,7 @@ def misfit(mean_square: float, count: float) -> float:
 def misfit_of(piece: Piece, mean_square: float, scale: float | None = None) -> float:
     """Nats to say where a piece's ink is, given lines that it is off by `mean_square` [pixels²].
 
-    A writer's precision goes with the size of what is drawn, not with the group's: a small loop is no careless
-    piece of something large.
+    A writer's precision goes with the size of what is drawn, not with the group's: a small loop is no
+    careless piece of something large.
     """
     return misfit(mean_square / max(scale or piece.scale, 1e-9) ** 2, piece.observations)

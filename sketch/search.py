@@ -10,9 +10,10 @@ __all__ = ["best_packing"]
 def best_packing(groups: Sequence[frozenset[int]], gains: Sequence[float]) -> list[int]:
     """Indices of pairwise disjoint groups whose gains (> 0) add up to the most.
 
-    Ink that no chosen group has stays unexplained and gains nothing.  Groups that share ink, however indirectly, form
-    a cluster; each cluster is solved by branch and bound: take the first piece of ink still open, try every group that
-    has it and leaving it out, and give up where even the best share of each remaining piece cannot win.
+    Ink that no chosen group has stays unexplained and gains nothing. Groups that share ink, however
+    indirectly, form a cluster; each cluster is solved by branch and bound: take the first piece of ink
+    still open, try every group that has it and leaving it out, and give up where even the best share of
+    each remaining piece cannot win.
     """
     chosen: list[int] = []
     for cluster in _clusters(groups):

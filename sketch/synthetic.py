@@ -1,8 +1,10 @@
-"""Hand-drawn ink made up: shapes as people of several hands would draw them, for tests, benchmarks and samples.
+"""Hand-drawn ink made up: shapes as people of several hands would draw them, for tests, benchmarks and
+samples.
 
-A stroke is an ideal path (straight or round), its corners rounded, bent by a slow drift of the hand and a fast tremor,
-with a hook where the pen goes down and an overshoot or a gap where strokes should meet.  All lengths are shares of the
-shape's size, so that ink scales.  Nothing is random but the generator that is passed in::
+A stroke is an ideal path (straight or round), its corners rounded, bent by a slow drift of the hand and a
+fast tremor, with a hook where the pen goes down and an overshoot or a gap where strokes should meet. All
+lengths are shares of the shape's size, so that ink scales. Nothing is random but the generator that is
+passed in::
 
     rng = np.random.default_rng(7)
     strokes = outline([(0, 0), (200, 0), (200, 100), (0, 100)], HANDS["quick"], rng)
@@ -10,6 +12,7 @@ shape's size, so that ink scales.  Nothing is random but the generator that is p
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,7 +35,8 @@ class Hand:
         drift: slow wandering of the pen, likewise: sides bow, circles are no circles.
         rounding: how much of a side a corner rounds off, 0 to 0.5.
         hook: length of the turn back where the pen goes down, as a share of the size; drawn half of the time.
-        overshoot: how far strokes run past where they should end (negative: how much they lack), as a share of the
+        overshoot: how far strokes run past where they should end (negative: how much they lack), as a share
+        of the
             size: a spread about zero.
         parts: the numbers of strokes that outlines are drawn in.
         spacing: between points, as a share of the size.
@@ -77,7 +81,7 @@ def outline(vertices: Sequence[Point], hand: Hand, rng: np.random.Generator) -> 
     cuts = [0, *sorted(rng.choice(np.arange(1, n), parts - 1, replace=False).tolist()), n]
     ring = np.concatenate([v, v[:1]])
     strokes = []
-    for a, b in zip(cuts, cuts[1:], strict=False):
+    for a, b in itertools.pairwise(cuts):
         path = _stretched(ring[a : b + 1], hand.overshoot * size * rng.standard_normal(2))
         stroke = _pen(_cornered(path, hand), size, hand, rng)
         strokes.append(stroke[::-1] if rng.random() < 0.3 else stroke)
@@ -151,7 +155,8 @@ def _stretched(path: Array, ends: Array) -> Array:
     out = path.copy()
     for end, by, inner in ((0, ends[0], 1), (-1, ends[1], -2)):
         d = path[end] - path[inner]
-        out[end] += by * d / max(float(np.hypot(*d)), 1e-9)
+        side = max(float(np.hypot(*d)), 1e-9)
+        out[end] += min(max(by / side, -0.25), 0.5) * d  # a side stays a side
     return out
 
 

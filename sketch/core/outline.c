@@ -48,19 +48,19 @@ static Frame normal_frame(const double *xy, int n, double least_axis)
     return f;
 }
 
-enum { ROUNDS = 2 };
+static const double LONG = 1.6; /* outlines longer than this many times their width are measured in two ways */
 static const double PI = 3.14159265358979323846;
-static const double TREMOR = 0.05;     /* spread of ink about what was meant, in the frame: a share of the radius */
+static const double TREMOR = 0.045;     /* spread of ink about what was meant, in the frame: a share of the radius */
 static const double SLOPPY = 0.1;      /* nobody's ink is off by much more than this */
 static const double RETRACE = 1.0;      /* nats an observation of ink that was drawn already */
-static const double BOW = 0.025;    /* usual bow of a straight side, as a share of its length */
+static const double BOW = 0.0195;   /* usual bow of a straight side, as a share of its length */
 /* (tremor / bow)², while splitting: how much rather a side trembles than bows. Both are tried. */
 static const double STIFFNESS[2] = {0.02, 0.6};
 static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
 static const double REFLEX = 1.2;  /* likewise one that turns inward */
-static const double FLATNESS = 0.12;
+static const double FLATNESS = 0.096;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
-static const double SHORTNESS = 0.012; /* the spreads say how fast such readings become unlikely */
+static const double SHORTNESS = 0.0096; /* the spreads say how fast such readings become unlikely */
 
 /* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e, or of its circles alone (a = b = 0): near the unit circle the
  * algebraic distance is the geometric one to first order. Reweighted (Cauchy's weights), so that a pen's hooks and tails do
@@ -111,7 +111,8 @@ static double fit_round(const double *x, const double *y, const double *factor, 
 
 /* Corners of the k-gon whose sides are the runs bounded by `cut` (counted from `start`), and its mean squared distance.
  * Ink that overshoots a corner lies on its side's line: it pays for the length beyond at a quarter. */
-static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double stiffness, double cap2,
+static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double stiffness,
+                          const double stretch[2], double cap2,
                           double *vertices,
                           double *oddness, double *perimeter)
 {
@@ -140,7 +141,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
     double sum = 0, odd = 0, around = 0, area = 0;
     for (int q = 0; q < k; q++) {
         const double *a = drawn + 2 * q, *b = drawn + 2 * ((q + 1) % k);
-        around += hypot(b[0] - a[0], b[1] - a[1]);
+        around += hypot((b[0] - a[0]) / stretch[0], (b[1] - a[1]) / stretch[1]);
         area += a[0] * b[1] - a[1] * b[0];
     }
     for (int q = 0; q < k; q++) {
@@ -161,7 +162,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         int reflex = turn * area < 0;
         double bent = bow / (BOW * fmax(l, 1e-9));
         double flat = fmax((reflex ? REFLEX : FLAT) - fabs(turn), 0) / FLATNESS;
-        double brief = fmax(fmin(SHORT, 0.7 / k) - l / fmax(around, 1e-9), 0) / SHORTNESS;
+        double brief = fmax(fmin(SHORT, 0.7 / k) - hypot(dx / stretch[0], dy / stretch[1]) / fmax(around, 1e-9), 0) / SHORTNESS;
         odd += 0.5 * (bent * bent + flat * flat + brief * brief);
     }
     *oddness = odd;
@@ -255,6 +256,49 @@ static void fit_rounds(const Runs *r, const Frame *f, const double *factor, doub
     out[8] = scale * sqrt(fmax(conic[4] + conic[2] * conic[2] / 4 + conic[3] * conic[3] / 4, 0));
 }
 
+static double turn(const double *a, const double *b, const double *c)
+{
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Whether no two sides of a polygon cross. */
+static int is_simple(const double *v, int n)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = i + 2; j < n; j++) {
+            if (i == 0 && j == n - 1)
+                continue;
+            const double *a = v + 2 * i, *b = v + 2 * (i + 1), *c = v + 2 * j, *d = v + 2 * ((j + 1) % n);
+            if (turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0)
+                return 0;
+        }
+    return 1;
+}
+
+/* The best polygons of 3 .. SIDES sides over two beginnings, where they cost less than those that are there. */
+static void best_polygons(const Runs *r, const double *factor, int way, double stiffness, const double stretch[2],
+                          double cap2, double ink, double observations, double *residual, double *cost, double *vertices)
+{
+    double total[SIDES + 1], polygon[2 * SIDES], odd, around;
+    int cut[SIDES + 1][SIDES + 1], start = 0;
+    /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin again
+     * from a corner found that way. */
+    for (int round = 0; round < 2; round++) {
+        runs_split(r, way, start, SIDES, total, cut);
+        for (int k = 3; k <= SIDES; k++) {
+            double s = fit_polygon(r, factor, start, cut[k], k, stiffness, stretch, cap2, polygon, &odd, &around);
+            double c = misfit(s, observations) + odd + retraced(ink, around, observations);
+            if (c < cost[k] && is_simple(polygon, k)) {
+                cost[k] = c;
+                residual[k] = s;
+                for (int q = 0; q < 2 * k; q++)
+                    vertices[2 * SIDES * k + q] = polygon[q] / stretch[q % 2];
+            }
+        }
+        start = (start + cut[5][2]) % SAMPLES;
+    }
+}
+
 /* Fit the readings of a closed chain of ink.
  *
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
@@ -291,25 +335,21 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
 
     for (int k = 0; k <= SIDES; k++)
         cost[k] = residual[k] = INFINITY;
-    double total[SIDES + 1], polygon[2 * SIDES], odd, around;
-    int cut[SIDES + 1][SIDES + 1];
+    double stretch[2] = {1, 1};
     runs_prepare(&r, 2, STIFFNESS);
-    for (int way = 0; way < 2; way++) {
-        /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin
-         * again from corners found that way. */
-        int start = 0;
-        for (int round = 0; round < ROUNDS; round++) {
-            runs_split(&r, way, start, SIDES, total, cut);
-            for (int k = 3; k <= SIDES; k++) {
-                double s = fit_polygon(&r, factor, start, cut[k], k, STIFFNESS[way], cap2, polygon, &odd, &around);
-                double c = misfit(s, observations) + odd + retraced(length[0], around, observations);
-                if (c < cost[k]) {
-                    cost[k] = c;
-                    residual[k] = s;
-                    memcpy(vertices + 2 * SIDES * k, polygon, 2 * k * sizeof *polygon);
-                }
-            }
-            start = (start + cut[5][2]) % SAMPLES;
+    for (int way = 0; way < 2; way++)
+        best_polygons(&r, factor, way, STIFFNESS[way], stretch, cap2, length[0], observations, residual, cost, vertices);
+    /* The ends of a long box may be as loose along it as its sides are across, as if it had been drawn square and
+     * stretched, or less so: both are tried, as nobody says how a hand errs. */
+    double p = hypot(f.back[0], f.back[2]), q = hypot(f.back[1], f.back[3]);
+    if (p > LONG * q) {
+        stretch[0] = sqrt(sqrt(p / q));
+        stretch[1] = 1 / stretch[0];
+        for (int i = 0; i < SAMPLES; i++) {
+            r.x[i] *= stretch[0];
+            r.y[i] *= stretch[1];
         }
+        runs_prepare(&r, 1, STIFFNESS);
+        best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, residual, cost, vertices);
     }
 }

@@ -31,8 +31,8 @@ _PICTURES = [
 def kind_of(data: bytes) -> str:
     """What some input is, by its content: "strokes", "scene", "picture", or "unknown" (text that is neither).
 
-    JSON is told by its keys without parsing it: a scene has "bodies", a sketch "strokes"; a file that has both
-    says what it is in "format".
+    JSON is told by its keys without parsing it: a scene has "bodies", a sketch "strokes"; a file that has
+    both says what it is in "format".
     """
     if any(data[at : at + len(magic)] == magic for at, magic in _PICTURES):
         return "picture"
@@ -52,7 +52,8 @@ def kind_of(data: bytes) -> str:
 def load_sketch(source: str | os.PathLike[str] | bytes) -> Sketch:
     """Read a sketch from a file or from its bytes: stroke JSON, or a picture of paper.
 
-    Raises InputError, which names the bad element, for what is no sketch; OSError for a file that cannot be read.
+    Raises InputError, which names the bad element, for what is no sketch; OSError for a file that cannot be
+    read.
     """
     from sketch.formats import strokes
 

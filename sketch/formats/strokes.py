@@ -1,7 +1,8 @@
 """The project's own stroke JSON: ``{"strokes": [{"points": [[x, y, t], ...]}, ...]}``.
 
-A stroke is ``{"points": [[x, y], [x, y, t], ...]}``, a bare list of points, or columns ``{"x": [...], "y": [...],
-"t": [...]}``.  Pixels, y down; t in milliseconds, optional.  Keys that are not named here are left alone.
+A stroke is ``{"points": [[x, y], [x, y, t], ...]}``, a bare list of points, or columns ``{"x": [...], "y":
+[...], "t": [...]}``. Pixels, y down; t in milliseconds, optional. Keys that are not named here are left
+alone.
 """
 
 from __future__ import annotations
@@ -108,8 +109,8 @@ def _points(raw: list[Any], path: str) -> Stroke:
     bad = np.flatnonzero(~(np.abs(xy) <= MAX_COORDINATE).all(axis=1))
     if len(bad):
         i = int(bad[0])
-        _check(xy[i, 0], f"{path}[{i}]", "x")
-        _check(xy[i, 1], f"{path}[{i}]", "y")
+        _check(float(xy[i, 0]), f"{path}[{i}]", "x")
+        _check(float(xy[i, 1]), f"{path}[{i}]", "y")
     return Stroke(xy, _times(table[:, 2]) if table.shape[1] > 2 else None)
 
 
@@ -158,7 +159,7 @@ def _times(t: Array) -> Array | None:
 
 
 def _check(value: Any, path: str, name: str) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(path, f"{name} is not a number")
     if not math.isfinite(value):
         raise InputError(path, f"{name} is not a finite number")

@@ -1,0 +1,56 @@
+"""A recognition in a person's words: each body, from which strokes, why this and not the next reading."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sketch.reading import Reading
+
+if TYPE_CHECKING:
+    from sketch.recognize import Recognition
+
+__all__ = ["explain"]
+
+_MEANING = {
+    "anchor": "an X: it fixes the body under it",
+    "pivot": "a small circle over bodies: they turn about it",
+    "gravity": "an arrow: gravity pulls along it",
+    "unread": "without a meaning: left out",
+}
+
+
+def explain(recognition: Recognition) -> str:
+    """One line a reading, and one for what speaks for it; then the scene's notes."""
+    scene = recognition.scene
+    bodies = {tuple(b.strokes or ()): b for b in scene.bodies}
+    lines = []
+    for reading in recognition.readings:
+        body = bodies.get(reading.strokes) if reading.solid else None
+        if body is not None:
+            what = f"{body.id}: {_shape(reading)}"
+            if body.anchored:
+                what += ", anchored"
+        else:
+            what = _MEANING.get(reading.kind, reading.kind)
+        lines.append(f"{what}, from {reading.named}")
+        lines.append("    " + _why(reading))
+    return "\n".join(lines + [f"note: {text}" for text in scene.notes])
+
+
+def _shape(reading: Reading) -> str:
+    n = len(reading.outline)
+    if reading.kind == "polygon":
+        return {3: "a triangle", 5: "a pentagon", 6: "a hexagon"}.get(n, f"a polygon of {n} sides")
+    if reading.kind == "bar":
+        return f"an open line of {n - 1} {'piece' if n == 2 else 'pieces'}"
+    return f"a {reading.kind}"
+
+
+def _why(reading: Reading) -> str:
+    if reading.forced is not None:
+        return f"because it was said to be: {reading.forced}"
+    if reading.kind == "unread":
+        return "because no shape says where the ink is in fewer words than the ink itself"
+    text = f"{reading.score:.0%} sure; saves {reading.gain:.0f} nats against saying the ink point by point"
+    rivals = [f"{kind} {score:.1%}" for kind, score in reading.alternatives if score >= 0.0005]
+    return text + (f"; next: {', '.join(rivals[:2])}" if rivals else "; nothing else comes near")

@@ -1,0 +1,104 @@
+"""Readings that the caller says: some strokes are an anchor, a ball, nothing; the rest is read around
+them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from sim.scene import InputError
+from sketch.grouping import arrow_groups, closing_chains
+from sketch.marks import read_arrow, read_cross
+from sketch.outlines import Chain, read_outline
+from sketch.pieces import Page, Piece
+from sketch.scoring import Fitted
+
+__all__ = ["KINDS", "Overrides", "forced_reading", "normal_overrides"]
+
+KINDS = ("circle", "ball", "pivot", "rectangle", "polygon", "bar", "anchor", "gravity", "ignore")
+_OUTLINES = {
+    "circle": "circle",
+    "ball": "circle",
+    "pivot": "circle",
+    "rectangle": "rectangle",
+    "polygon": "polygon",
+}
+
+Overrides = dict[tuple[int, ...], str]
+
+
+def normal_overrides(given: Mapping[int | tuple[int, ...], str] | None, stroke_count: int) -> Overrides:
+    """The overrides by tuples of strokes in order. Raises InputError for strokes or kinds that there are
+    not."""
+    out: Overrides = {}
+    seen: set[int] = set()
+    for key, kind in (given or {}).items():
+        strokes = (key,) if isinstance(key, int) else tuple(sorted(set(key)))
+        name = ",".join(map(str, strokes))
+        path = f"overrides[{name}]"
+        if kind not in KINDS:
+            raise InputError(path, f"{kind!r} is not a reading", "one of " + ", ".join(KINDS))
+        for s in strokes:
+            if not 0 <= s < stroke_count:
+                raise InputError(path, f"there is no stroke {s}", f"strokes are 0 to {stroke_count - 1}")
+            if s in seen:
+                raise InputError(path, f"stroke {s} has another reading already")
+            seen.add(s)
+        out[strokes] = kind
+    return out
+
+
+def forced_reading(page: Page, strokes: tuple[int, ...], kind: str) -> Fitted | None:
+    """The strokes read as they are said to be, however badly they fit; None where they have no length."""
+    pieces = [p for p in page.pieces if p.stroke in strokes]
+    if not pieces or kind == "ignore":
+        return None
+    names = tuple(p.index for p in pieces)
+    if kind in _OUTLINES:
+        found = read_outline(page, _around(page, pieces))
+        best = [f for f in found if f.kind == _OUTLINES[kind]] or [f for f in found if f.kind == "polygon"]
+        return best[0]
+    longest = max(pieces, key=lambda p: p.length)
+    if kind == "bar":
+        return Fitted("bar", names, 0.0, longest.line(1))
+    if kind == "anchor":
+        return read_cross(page, names[:2]) or Fitted("cross", names, 0.0, _bars(pieces))
+    return _arrow(page, names) or Fitted("arrow", names, 0.0, np.array(longest.ends))
+
+
+def _arrow(page: Page, names: tuple[int, ...]) -> Fitted | None:
+    found = [
+        read_arrow(page, group, tail, toward)
+        for group, tail, toward in arrow_groups(page)
+        if tuple(sorted(group)) == names
+    ]
+    return min((f for f in found if f is not None), key=lambda f: f.cost, default=None)
+
+
+def _bars(pieces: list[Piece]) -> np.ndarray:
+    if len(pieces) > 1:
+        return np.concatenate([p.line(1) for p in pieces[:2]])
+    return np.array(pieces[0].vertices[3][:4])
+
+
+def _around(page: Page, pieces: list[Piece]) -> Chain:
+    """The pieces in an order that goes around: the tightest that closes, else each to the nearest end."""
+    wanted = {p.index for p in pieces}
+    others = {p.index for p in page.pieces} - wanted
+    for chain in closing_chains(page, others) if len(pieces) > 1 else ():
+        if {i for i, _ in chain} == wanted:
+            return chain
+    chain, left = [(pieces[0].index, False)], pieces[1:]
+    at = pieces[0].ends[1]
+    while left:
+        _, p, e = min(_gaps(at, left), key=lambda t: t[0])
+        chain.append((p.index, e == 1))
+        at = p.ends[1 - e]
+        left = [q for q in left if q is not p]
+    return chain
+
+
+def _gaps(at: tuple[float, float], pieces: list[Piece]) -> Iterable[tuple[float, Piece, int]]:
+    return ((math.dist(at, p.ends[e]), p, e) for p in pieces for e in (0, 1))
