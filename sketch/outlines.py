@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -53,7 +54,7 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
         off = fit.residual[4]
         cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + BOX + gaps
         out.append(Fitted("rectangle", names, cost, corners, scale))
-    return out
+    return [replace(f, gap=fit.gap / fit.ink) for f in out]
 
 
 def gone_over(page: Page, fitted: Fitted, index: int) -> float:

@@ -111,8 +111,9 @@ def read_groups(page: Page) -> list[Fitted]:
     for p in page.pieces:
         if p.gap < 0.2 * p.length:
             single[p.index] = read_outline(page, [(p.index, False)])
+            best = min(single[p.index], key=lambda f: f.cost)
             loop = p.gap < 0.12 * p.length and p.scale > 0.2 * p.extent
-            if loop or min(f.cost for f in single[p.index]) < 0.6 * unread(p):
+            if best.gap < 0.1 and (loop or best.cost < 0.6 * unread(p)):
                 complete.add(p.index)
     outlines = []
     for chain in closing_chains(page, complete):

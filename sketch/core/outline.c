@@ -60,6 +60,7 @@ static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a
 static const double REFLEX = 1.2;  /* likewise one that turns inward */
 static const double FLATNESS = 0.096;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
+static const double WALL = 2.7;     /* unless its two corners turn by more than this [rad] together: it is a wall's end */
 static const double SHORTNESS = 0.0096; /* the spreads say how fast such readings become unlikely */
 
 /* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e, or of its circles alone (a = b = 0): near the unit circle the
@@ -162,7 +163,12 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         int reflex = turn * area < 0;
         double bent = bow / (BOW * fmax(l, 1e-9));
         double flat = fmax((reflex ? REFLEX : FLAT) - fabs(turn), 0) / FLATNESS;
-        double brief = fmax(fmin(SHORT, 0.7 / k) - hypot(dx / stretch[0], dy / stretch[1]) / fmax(around, 1e-9), 0) / SHORTNESS;
+        double short_of = fmax(fmin(SHORT, 0.7 / k) - hypot(dx / stretch[0], dy / stretch[1]) / fmax(around, 1e-9), 0);
+        /* what rounds a corner turns by as much as a corner does; the end of a wall turns back */
+        const double *z = drawn + 2 * ((q + k - 1) % k);
+        double fx = a[0] - z[0], fy = a[1] - z[1], gx = c[0] - b[0], gy = c[1] - b[1];
+        double back = fabs(atan2(fx * dy - fy * dx, fx * dx + fy * dy) + atan2(dx * gy - dy * gx, dx * gx + dy * gy));
+        double brief = short_of / SHORTNESS * fmin(fmax((WALL - back) / 0.5, 0), 1);
         odd += 0.5 * (bent * bent + flat * flat + brief * brief);
     }
     *oddness = odd;
