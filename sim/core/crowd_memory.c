@@ -71,7 +71,7 @@ int32_t index_find(const Index *index, uint64_t key) {
 Record contact_record(const Contact *c) {
     Record r = {.key = c->key, .a = c->a, .b = c->b, .count = c->count};
     for (int32_t k = 0; k < c->count; k++) {
-        r.feature[k] = c->point[k].feature;
+        r.lever[k] = c->point[k].spin_na;
         r.impulse_n[k] = c->point[k].impulse_n;
         r.impulse_t[k] = c->point[k].impulse_t;
     }

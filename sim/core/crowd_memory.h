@@ -28,7 +28,7 @@ int32_t index_find(const Index *index, uint64_t key);      /* -1: not there */
 typedef struct Record {
     uint64_t key;
     int32_t a, b, count;
-    uint32_t feature[2];
+    double lever[2]; /* where along the contact a point is: how far from a's centre */
     double impulse_n[2], impulse_t[2];
 } Record;
 

@@ -6,6 +6,8 @@
  */
 #include "crowd_rows.h"
 
+#include "broad.h"
+
 static const double RATE = 0.4; /* share of an overlap that a pass drives out */
 
 Soft soft(double frequency, double damping, double dt) {
@@ -14,11 +16,11 @@ Soft soft(double frequency, double damping, double dt) {
     return (Soft){omega / a1, a2 * a3, a3};
 }
 
-static inline void push(Mover *a, Mover *b, Vec direction, double spin_a, double spin_b, double impulse) {
-    a->velocity = vmad(a->velocity, -impulse * a->inverse_mass, direction);
-    a->spin -= impulse * a->inverse_moment * spin_a;
-    b->velocity = vmad(b->velocity, impulse * b->inverse_mass, direction);
-    b->spin += impulse * b->inverse_moment * spin_b;
+static inline void push(const Contact *c, Mover *a, Mover *b, Vec direction, double spin_a, double spin_b, double impulse) {
+    a->velocity = vmad(a->velocity, -impulse * c->inverse_mass_a, direction);
+    a->spin -= impulse * c->inverse_moment_a * spin_a;
+    b->velocity = vmad(b->velocity, impulse * c->inverse_mass_b, direction);
+    b->spin += impulse * c->inverse_moment_b * spin_b;
 }
 
 static inline double speed(const Mover *a, const Mover *b, Vec direction, double spin_a, double spin_b) {
@@ -42,8 +44,8 @@ void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double d
             double gap = separation(c, p, a, b);
             p->limit = gap > 0 ? -gap * inverse_dt : 0;
             if (p->impulse_n == 0) continue;
-            push(a, b, n, p->spin_na, p->spin_nb, p->impulse_n);
-            push(a, b, t, p->spin_ta, p->spin_tb, p->impulse_t);
+            push(c, a, b, n, p->spin_na, p->spin_nb, p->impulse_n);
+            push(c, a, b, t, p->spin_ta, p->spin_tb, p->impulse_t);
         }
     }
 }
@@ -69,7 +71,7 @@ static inline void solve_friction(Contact *c, Point *p, Mover *a, Mover *b, Vec 
     sum = sum > most ? most : sum < -most ? -most : sum;
     double impulse = sum - p->impulse_t;
     p->impulse_t = sum;
-    push(a, b, t, p->spin_ta, p->spin_tb, impulse);
+    push(c, a, b, t, p->spin_ta, p->spin_tb, impulse);
 }
 
 /* Bring the normal velocity to what is wanted, without pulling. Returns the impulse. */
@@ -80,17 +82,43 @@ static inline double solve_normal(Contact *c, Point *p, Mover *a, Mover *b, doub
     double impulse = sum - p->impulse_n;
     if (impulse == 0) return 0;
     p->impulse_n = sum;
-    push(a, b, c->normal, p->spin_na, p->spin_nb, impulse);
+    push(c, a, b, c->normal, p->spin_na, p->spin_nb, impulse);
     return impulse;
 }
 
 /* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
 static inline void solve_rolling(const Contact *c, Mover *a, Mover *b) {
     double normal = c->point[0].impulse_n + (c->count > 1 ? c->point[1].impulse_n : 0), most = c->rolling * normal;
-    double wanted = (a->spin - b->spin) / (a->inverse_moment + b->inverse_moment);
+    double wanted = (a->spin - b->spin) / (c->inverse_moment_a + c->inverse_moment_b);
     wanted = wanted > most ? most : wanted < -most ? -most : wanted;
-    a->spin -= a->inverse_moment * wanted;
-    b->spin += b->inverse_moment * wanted;
+    a->spin -= c->inverse_moment_a * wanted;
+    b->spin += c->inverse_moment_b * wanted;
+}
+
+/* Both normal rows of a contact at once, so that neither end of a box goes first: the linear complementarity problem of two
+ * rows by its four cases (Catto's Box2D). wanted: the normal velocities. Returns the larger change relative to its mass. */
+static inline double solve_pair(Contact *c, Mover *a, Mover *b) {
+    Point *p = &c->point[0], *q = &c->point[1];
+    double k11 = 1 / p->mass_n, k22 = 1 / q->mass_n, k12 = c->coupling;
+    double vp = speed(a, b, c->normal, p->spin_na, p->spin_nb) - p->limit;
+    double vq = speed(a, b, c->normal, q->spin_na, q->spin_nb) - q->limit;
+    /* what the velocities would be without the impulses so far */
+    double bp = vp - k11 * p->impulse_n - k12 * q->impulse_n, bq = vq - k12 * p->impulse_n - k22 * q->impulse_n;
+    double x = (k12 * bq - k22 * bp) * c->pair_mass, y = (k12 * bp - k11 * bq) * c->pair_mass;
+    if (x < 0 || y < 0) {
+        x = -bp * p->mass_n, y = 0;
+        if (x < 0 || k12 * x + bq < 0) {
+            x = 0, y = -bq * q->mass_n;
+            if (y < 0 || k12 * y + bp < 0) x = y = 0;
+        }
+    }
+    double dx = x - p->impulse_n, dy = y - q->impulse_n;
+    p->impulse_n = x;
+    q->impulse_n = y;
+    push(c, a, b, c->normal, p->spin_na, p->spin_nb, dx);
+    push(c, a, b, c->normal, q->spin_na, q->spin_nb, dy);
+    double ax = fabs(dx) * k11, ay = fabs(dy) * k22;
+    return ax > ay ? ax : ay;
 }
 
 bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first) {
@@ -99,16 +127,20 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
         Contact *c = &contact[i];
         if (!first && heat[c->a] < pass - 1 && heat[c->b] < pass - 1) continue;
         Mover *a = &mover[c->a], *b = &mover[c->b];
-        bool hot = false;
-        for (int32_t k = 0; k < c->count; k++) {
-            Point *p = &c->point[k];
-            double change = solve_normal(c, p, a, b, p->limit);
-            hot = hot || fabs(change) * dt > p->mass_n * c->fine;
+        double change = 0;
+        if (c->count == 2 && c->pair_mass > 0) {
+            change = solve_pair(c, a, b);
+        } else {
+            for (int32_t k = 0; k < c->count; k++) {
+                Point *p = &c->point[k];
+                double impulse = solve_normal(c, p, a, b, p->limit);
+                change = larger(change, fabs(impulse) / p->mass_n);
+            }
         }
         Vec t = vperp(c->normal);
         for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
         if (c->rolling > 0) solve_rolling(c, a, b);
-        if (!hot) continue;
+        if (change * dt <= c->fine) continue;
         heated = true;
         if (a->inverse_mass > 0) heat[c->a] = pass;
         if (b->inverse_mass > 0) heat[c->b] = pass;
@@ -116,21 +148,40 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
     return heated;
 }
 
+static inline double overlap(const Contact *c, const Point *p, const Mover *a, const Mover *b) {
+    double depth = -separation(c, p, a, b) - c->slop;
+    return depth < c->slack ? depth : c->slack;
+}
+
+static inline void part(const Contact *c, const Point *p, Mover *a, Mover *b, double push) {
+    a->moved = vmad(a->moved, -push * c->inverse_mass_a, c->normal);
+    a->turned -= push * c->inverse_moment_a * p->spin_na;
+    b->moved = vmad(b->moved, push * c->inverse_mass_b, c->normal);
+    b->turned += push * c->inverse_moment_b * p->spin_nb;
+}
+
 /* Take a share of the overlaps out of the positions. */
 void contacts_part(Contact *contact, int32_t count, Mover *mover) {
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         Mover *a = &mover[c->a], *b = &mover[c->b];
+        if (c->count == 2 && c->pair_mass > 0) {
+            const Point *p = &c->point[0], *q = &c->point[1];
+            double dp = overlap(c, p, a, b), dq = overlap(c, q, a, b);
+            if (dp <= 0 && dq <= 0) continue;
+            double x = (dp / q->mass_n - c->coupling * dq) * c->pair_mass;
+            double y = (dq / p->mass_n - c->coupling * dp) * c->pair_mass;
+            if (x < 0 || y < 0) {
+                x = dp > dq ? dp * p->mass_n : 0;
+                y = dp > dq ? 0 : dq * q->mass_n;
+            }
+            part(c, p, a, b, RATE * x);
+            part(c, q, a, b, RATE * y);
+            continue;
+        }
         for (int32_t k = 0; k < c->count; k++) {
-            Point *p = &c->point[k];
-            double overlap = -separation(c, p, a, b) - c->slop;
-            if (overlap <= 0) continue;
-            overlap = overlap < c->slack ? overlap : c->slack;
-            double push = RATE * overlap * p->mass_n;
-            a->moved = vmad(a->moved, -push * a->inverse_mass, c->normal);
-            a->turned -= push * a->inverse_moment * p->spin_na;
-            b->moved = vmad(b->moved, push * b->inverse_mass, c->normal);
-            b->turned += push * b->inverse_moment * p->spin_nb;
+            double depth = overlap(c, &c->point[k], a, b);
+            if (depth > 0) part(c, &c->point[k], a, b, RATE * depth * c->point[k].mass_n);
         }
     }
 }

@@ -6,6 +6,7 @@
 static const double SKIN = 1e-3; /* of the smaller reach: as near as that counts as touching */
 static const double MORE = 0.05; /* of the smaller reach: a contact's other end comes with it when it is as near as that */
 static const double ROOM = 0.1;  /* of a body's reach: what it may stray from its way before its pairs are looked for anew */
+static const double APART = 1e3; /* conditioning up to which two points are solved as a pair */
 static const double TURN = 0.03; /* [rad]: a pair that has turned so far in the frame is looked at again */
 
 static void *table(size_t count, size_t size) { return calloc(count + 1, size); }
@@ -160,16 +161,16 @@ static inline double approach(const Crowd *crowd, const Near *n, double dt) {
 static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, const Mover *a, const Mover *b, Vec at_a,
                        Vec at_b) {
     Vec n = c->normal, t = vperp(n), ra = vsub(found->point, at_a), rb = vsub(found->point, at_b);
-    double m = a->inverse_mass + b->inverse_mass;
-    *p = (Point){.feature = found->feature};
+    double m = c->inverse_mass_a + c->inverse_mass_b;
+    *p = (Point){0};
     p->spin_na = vcross(ra, n);
     p->spin_nb = vcross(rb, n);
     p->spin_ta = vcross(ra, t);
     p->spin_tb = vcross(rb, t);
     p->along_na = vdot(ra, n);
     p->along_nb = vdot(rb, n);
-    p->mass_n = 1 / (m + a->inverse_moment * p->spin_na * p->spin_na + b->inverse_moment * p->spin_nb * p->spin_nb);
-    p->mass_t = 1 / (m + a->inverse_moment * p->spin_ta * p->spin_ta + b->inverse_moment * p->spin_tb * p->spin_tb);
+    p->mass_n = 1 / (m + c->inverse_moment_a * p->spin_na * p->spin_na + c->inverse_moment_b * p->spin_nb * p->spin_nb);
+    p->mass_t = 1 / (m + c->inverse_moment_a * p->spin_ta * p->spin_ta + c->inverse_moment_b * p->spin_tb * p->spin_tb);
     /* what a mover has done in the frame so far is in the formula of crowd_rows.c, and taken off here */
     p->separation = found->separation - vdot(vsub(b->moved, a->moved), n) - b->turned * p->spin_nb +
                     a->turned * p->spin_na +
@@ -190,12 +191,27 @@ static void set_points(Crowd *crowd, const World *world, Contact *c, const Manif
     c->moved = vsub(b->moved, a->moved);
     for (int32_t k = 0; k < m->count; k++) {
         fill_point(&c->point[k], &m->point[k], c, a, b, at_a, at_b);
-        for (int32_t l = 0; old && l < old->count; l++)
-            if (old->feature[l] == m->point[k].feature) {
-                c->point[k].impulse_n = old->impulse_n[l];
-                c->point[k].impulse_t = old->impulse_t[l];
+        int32_t same = -1;
+        double nearest = 4 * c->slack;
+        for (int32_t l = 0; old && l < old->count; l++) {
+            double shift = fabs(old->lever[l] - c->point[k].spin_na);
+            if (shift < nearest) {
+                nearest = shift;
+                same = l;
             }
+        }
+        if (same < 0) continue;
+        c->point[k].impulse_n = old->impulse_n[same];
+        c->point[k].impulse_t = old->impulse_t[same];
     }
+    c->pair_mass = 0;
+    if (c->count < 2) return;
+    const Point *p = &c->point[0], *q = &c->point[1];
+    double k11 = 1 / p->mass_n, k22 = 1 / q->mass_n;
+    c->coupling = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * p->spin_na * q->spin_na +
+                  c->inverse_moment_b * p->spin_nb * q->spin_nb;
+    double determinant = k11 * k22 - c->coupling * c->coupling;
+    if (k11 * k22 < APART * determinant) c->pair_mass = 1 / determinant;
 }
 
 /* Bodies this slow come to rest by rolling resistance, as real ones do: without it a box rocks on a ball for ever. */
@@ -206,6 +222,19 @@ static bool slow(const World *world, int32_t body) {
     return vdot(b->velocity, b->velocity) + b->spin * b->spin * b->reach * b->reach <= limit;
 }
 
+/* In their contact a body counts as no more than so many times as heavy as the other: sequential impulses take as many
+ * passes as that to hold the heavy on the light, and a blow is hardly different. */
+static void set_masses(Contact *c, const Mover *a, const Mover *b) {
+    static const double HEAVIER = 100;
+    double least_a = b->inverse_mass / HEAVIER, least_b = a->inverse_mass / HEAVIER;
+    double scale_a = a->inverse_mass > 0 && a->inverse_mass < least_a ? least_a / a->inverse_mass : 1;
+    double scale_b = b->inverse_mass > 0 && b->inverse_mass < least_b ? least_b / b->inverse_mass : 1;
+    c->inverse_mass_a = scale_a * a->inverse_mass;
+    c->inverse_moment_a = scale_a * a->inverse_moment;
+    c->inverse_mass_b = scale_b * b->inverse_mass;
+    c->inverse_moment_b = scale_b * b->inverse_moment;
+}
+
 static void add_contact(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
     static const double SLACK = 0.05, SLOP = 0.005, FINE = 5e-3, ROLLING = 2e-3;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
@@ -214,7 +243,7 @@ static void add_contact(Crowd *crowd, const World *world, const Near *near, cons
     Contact *c = &crowd->contact[crowd->contact_count++];
     c->a = near->a;
     c->b = near->b;
-    c->walled = crowd->mover[near->a].inverse_mass == 0 || crowd->mover[near->b].inverse_mass == 0;
+    set_masses(c, &crowd->mover[near->a], &crowd->mover[near->b]);
     c->friction = pair_friction(sa, sb);
     c->elasticity = pair_elasticity(sa, sb);
     c->slack = SLACK * reach;

@@ -7,8 +7,6 @@
 
 enum { SMALL = 8 }; /* outlines up to this size are searched vertex by vertex */
 
-#define FROM_B 0x80000000u
-
 static int32_t after(const Outline *o, int32_t i) { return i + 1 < o->count ? i + 1 : 0; }
 static int32_t before(const Outline *o, int32_t i) { return i > 0 ? i - 1 : o->count - 1; }
 
@@ -86,20 +84,20 @@ static void apart(Manifold *m, Vec normal, double gap) {
     m->count = 0;
 }
 
-static void one_point(Manifold *m, Vec normal, Vec on_a, Vec on_b, uint32_t feature, double margin) {
+static void one_point(Manifold *m, Vec normal, Vec on_a, Vec on_b, double margin) {
     Vec d = vsub(on_b, on_a);
     double separation = vdot(normal, d);
     m->normal = normal;
     m->gap = separation;
     m->count = separation <= margin;
-    m->point[0] = (ManifoldPoint){vmad(on_a, 0.5, d), separation, feature};
+    m->point[0] = (ManifoldPoint){vmad(on_a, 0.5, d), separation};
 }
 
 static void between_circles(const Outline *a, const Outline *b, double margin, Manifold *m) {
     Vec d = vsub(b->vertex[0], a->vertex[0]);
     double distance = vlength(d);
     Vec n = distance > 0 ? vscale(d, 1 / distance) : vec(0, 1);
-    one_point(m, n, vmad(a->vertex[0], a->radius, n), vmad(b->vertex[0], -b->radius, n), 0, margin);
+    one_point(m, n, vmad(a->vertex[0], a->radius, n), vmad(b->vertex[0], -b->radius, n), margin);
 }
 
 /* a is a polygon, b a circle. */
@@ -125,11 +123,11 @@ static void polygon_circle(const Outline *a, const Outline *b, double margin, Ma
         double distance = vlength(d);
         n = vscale(d, 1 / distance);
         if (exposed(a, end, n))
-            one_point(m, n, a->vertex[end], vmad(centre, -b->radius, n), (uint32_t)end, margin);
+            one_point(m, n, a->vertex[end], vmad(centre, -b->radius, n), margin);
         else
             apart(m, n, distance - b->radius);
     } else if (f.touches) {
-        one_point(m, n, vmad(centre, -f.separation, n), vmad(centre, -b->radius, n), (uint32_t)f.side, margin);
+        one_point(m, n, vmad(centre, -f.separation, n), vmad(centre, -b->radius, n), margin);
     } else {
         apart(m, n, f.separation - b->radius);
     }
@@ -171,7 +169,7 @@ static void corners(const Outline *a, int32_t i, const Outline *b, int32_t j, do
     double distance = vlength(d);
     Vec n = vscale(d, 1 / distance);
     if (exposed(a, i, n) && exposed(b, j, vscale(n, -1)))
-        one_point(m, n, a->vertex[i], b->vertex[j], (uint32_t)i, margin);
+        one_point(m, n, a->vertex[i], b->vertex[j], margin);
     else
         apart(m, n, distance);
 }
@@ -187,21 +185,13 @@ static void clip(const Outline *a, const Outline *b, Facing f, bool flip, double
     if (!f.touches) return;
     Vec p = a->vertex[i], first = b->vertex[j2], span = vsub(b->vertex[j], first); /* b's side along t */
     double start = vdot(p, t), end = vdot(a->vertex[i2], t), s = vdot(first, t), s2 = s + vdot(span, t);
-    uint32_t mark_a = flip ? FROM_B : 0, mark_b = flip ? 0 : FROM_B;
     Vec ends[2] = {first, b->vertex[j]};
-    uint32_t feature[2] = {mark_b | (uint32_t)j2, mark_b | (uint32_t)j};
-    if (s < start && s2 > start) {
-        ends[0] = vmad(first, (start - s) / (s2 - s), span);
-        feature[0] = mark_a | (uint32_t)i;
-    }
-    if (s2 > end && s < end) {
-        ends[1] = vmad(first, (end - s) / (s2 - s), span);
-        feature[1] = mark_a | (uint32_t)i2;
-    }
+    if (s < start && s2 > start) ends[0] = vmad(first, (start - s) / (s2 - s), span);
+    if (s2 > end && s < end) ends[1] = vmad(first, (end - s) / (s2 - s), span);
     for (int32_t k = 0; k < 2; k++) {
         double separation = vdot(vsub(ends[k], p), n);
         if (separation > margin) continue;
-        m->point[m->count++] = (ManifoldPoint){vmad(ends[k], -0.5 * separation, n), separation, feature[k]};
+        m->point[m->count++] = (ManifoldPoint){vmad(ends[k], -0.5 * separation, n), separation};
     }
 }
 

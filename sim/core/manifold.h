@@ -21,7 +21,6 @@ typedef struct Outline {
 typedef struct ManifoldPoint {
     Vec point;          /* halfway between the two surfaces */
     double separation;  /* along the normal; negative when they overlap */
-    uint32_t feature;   /* the vertex that it comes from: the same point has the same one a moment later */
 } ManifoldPoint;
 
 typedef struct Manifold {

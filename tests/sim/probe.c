@@ -16,7 +16,7 @@ static Outline outline(const double *v, int32_t count, double radius, Vec *norma
     return (Outline){p, normal, NULL, NULL, count, radius};
 }
 
-/* out: normal x, y, gap, then x, y, separation of each point; features as whole numbers after them. Returns the count. */
+/* out: normal x, y, gap, then x, y, separation of each point. Returns the count. */
 PROBE int32_t probe_manifold(const double *a, int32_t count_a, double radius_a, const double *b, int32_t count_b,
                              double radius_b, double margin, double *out) {
     Vec normal_a[256], normal_b[256];
@@ -25,8 +25,8 @@ PROBE int32_t probe_manifold(const double *a, int32_t count_a, double radius_a, 
     manifold_find(&oa, &ob, margin, &m);
     out[0] = m.normal.x, out[1] = m.normal.y, out[2] = m.gap;
     for (int32_t k = 0; k < m.count; k++) {
-        out[3 + 4 * k] = m.point[k].point.x, out[4 + 4 * k] = m.point[k].point.y;
-        out[5 + 4 * k] = m.point[k].separation, out[6 + 4 * k] = m.point[k].feature;
+        out[3 + 3 * k] = m.point[k].point.x, out[4 + 3 * k] = m.point[k].point.y;
+        out[5 + 3 * k] = m.point[k].separation;
     }
     return m.count;
 }
