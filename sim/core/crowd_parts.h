@@ -34,6 +34,7 @@ struct Crowd {
     int64_t passes;
     Pose *start;         /* by body: when the frame began */
     double *start_angle, *body_swing;
+    Vec *lead;           /* by body: how far ahead of the start its contacts are looked for */
     int64_t *placed;     /* by body: the moment for which its outlines hold */
     int64_t moment;      /* counts frames and substeps */
     Posed posed;

@@ -6,6 +6,7 @@
 static const double SKIN = 1e-3; /* of the smaller reach: as near as that counts as touching */
 static const double MORE = 0.05; /* of the smaller reach: a contact's other end comes with it when it is as near as that */
 static const double ROOM = 0.1;  /* of a body's reach: what it may stray from its way before its pairs are looked for anew */
+static const double FAST = 0.25; /* of the smaller reach in a substep: a pair as fast as that is followed to its touch */
 static const double APART = 1e3; /* conditioning up to which two points are solved as a pair */
 static const double TURN = 0.03; /* [rad]: a pair that has turned so far in the frame is looked at again */
 
@@ -43,7 +44,8 @@ int touch_create(Crowd *crowd, const World *world) {
     crowd->range = table(bodies, sizeof *crowd->range);
     crowd->start_angle = table(bodies, sizeof *crowd->start_angle);
     crowd->body_swing = table(bodies, sizeof *crowd->body_swing);
-    if (!crowd->range || !crowd->start_angle || !crowd->body_swing || !crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves)
+    crowd->lead = table(bodies, sizeof *crowd->lead);
+    if (!crowd->lead || !crowd->range || !crowd->start_angle || !crowd->body_swing || !crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves)
         return SIM_OUT_OF_MEMORY;
     if (sweep_create(&crowd->sweep, world->shape_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (contact_room(crowd, 2 * world->body_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
@@ -65,6 +67,7 @@ void touch_destroy(Crowd *crowd) {
     free(crowd->range);
     free(crowd->start_angle);
     free(crowd->body_swing);
+    free(crowd->lead);
     index_destroy(&crowd->known);
     index_destroy(&crowd->last_index);
     free(crowd->last_near);
@@ -78,16 +81,15 @@ void touch_destroy(Crowd *crowd) {
 void touch_place(Crowd *crowd, const World *world, int32_t body) {
     const Body *b = &world->body[body];
     const Mover *m = &crowd->mover[body];
-    Pose at = crowd->start[body];
-    if (m->turned != 0 || m->moved.x != 0 || m->moved.y != 0)
-        at = pose(vadd(b->position, m->moved), b->angle + m->turned);
-    posed_place(&crowd->posed, world, body, at);
+    if (m->inverse_mass > 0) posed_place(&crowd->posed, world, body, pose(vadd(b->position, m->moved), b->angle + m->turned));
     crowd->placed[body] = crowd->moment;
 }
 
 /* All that a box of the body may sweep while the body keeps to its range. */
-static Box swept(Box box, const Range *range) {
-    return box_grow((Box){vadd(box.low, range->low), vadd(box.high, range->high)}, range->room);
+static Box swept(const Crowd *crowd, Box box, int32_t body) {
+    const Range *range = &crowd->range[body];
+    Vec lead = crowd->lead[body];
+    return box_grow((Box){vadd(box.low, vsub(range->low, lead)), vadd(box.high, vsub(range->high, lead))}, range->room);
 }
 
 /* Let a body's range reach as far as it goes from where it is, at its present velocity. */
@@ -106,21 +108,43 @@ static void sweep_boxes(Crowd *crowd, const World *world, int32_t body) {
         const Shape *shape = &world->shape[s];
         Box box = crowd->piece_box[shape->first_piece];
         for (int32_t p = 1; p < shape->piece_count; p++) box = box_join(box, crowd->piece_box[shape->first_piece + p]);
-        crowd->shape_box[s] = swept(box, &crowd->range[body]);
+        crowd->shape_box[s] = swept(crowd, box, body);
         crowd->shape_moves[s] = b->mode == MODE_CROWD;
     }
+}
+
+/* A body that does not go far is placed where it will be in the middle of the frame: contacts that stay as they are for
+ * the whole frame are then right to second order, and rocking and rolling gain no energy from them. */
+static void look_ahead(Crowd *crowd, const World *world, int32_t body, double dt) {
+    static const double NOT_FAR = 0.05; /* of its reach */
+    const Body *b = &world->body[body];
+    Mover *m = &crowd->mover[body];
+    double way = 0.5 * dt * (vlength(m->velocity) + b->reach * fabs(m->spin));
+    if (way > NOT_FAR * b->reach) return;
+    m->moved = vscale(m->velocity, 0.5 * dt);
+    m->turned = 0.5 * dt * m->spin;
+    crowd->lead[body] = m->moved;
+    crowd->range[body].room += fabs(m->turned) * crowd->body_swing[body];
 }
 
 /* Where the body is as the frame begins, and all that it may sweep in it. */
 static void start_body(Crowd *crowd, const World *world, int32_t body, double dt) {
     const Body *b = &world->body[body];
     Pose *start = &crowd->start[body];
-    bool known = crowd->placed[body] != 0 && start->p.x == b->position.x && start->p.y == b->position.y &&
+    bool moves = b->mode == MODE_CROWD;
+    bool known = !moves && crowd->placed[body] != 0 && start->p.x == b->position.x && start->p.y == b->position.y &&
                  crowd->start_angle[body] == b->angle;
+    crowd->range[body] = (Range){{0, 0}, {0, 0}, 0};
+    crowd->lead[body] = vec(0, 0);
+    if (moves) {
+        widen_range(crowd, world, body, dt);
+        look_ahead(crowd, world, body, dt);
+    }
     if (!known) {
-        *start = body_pose(b);
-        crowd->start_angle[body] = b->angle;
-        touch_place(crowd, world, body);
+        const Mover *m = &crowd->mover[body];
+        *start = pose(vadd(b->position, m->moved), b->angle + m->turned);
+        crowd->start_angle[body] = b->angle + m->turned;
+        posed_place(&crowd->posed, world, body, *start);
         for (int32_t s = b->first_shape; s < b->first_shape + b->shape_count; s++) {
             const Shape *shape = &world->shape[s];
             for (int32_t p = 0; p < shape->piece_count; p++)
@@ -128,8 +152,6 @@ static void start_body(Crowd *crowd, const World *world, int32_t body, double dt
         }
     }
     crowd->placed[body] = crowd->moment;
-    crowd->range[body] = (Range){{0, 0}, {0, 0}, 0};
-    if (b->mode == MODE_CROWD) widen_range(crowd, world, body, dt);
     sweep_boxes(crowd, world, body);
 }
 
@@ -159,7 +181,7 @@ static inline double approach(const Crowd *crowd, const Near *n, double dt) {
 }
 
 static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, const Mover *a, const Mover *b, Vec at_a,
-                       Vec at_b) {
+                       Vec at_b, double radius_a, double radius_b) {
     Vec n = c->normal, t = vperp(n), ra = vsub(found->point, at_a), rb = vsub(found->point, at_b);
     double m = c->inverse_mass_a + c->inverse_mass_b;
     *p = (Point){0};
@@ -167,8 +189,8 @@ static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, c
     p->spin_nb = vcross(rb, n);
     p->spin_ta = vcross(ra, t);
     p->spin_tb = vcross(rb, t);
-    p->along_na = vdot(ra, n);
-    p->along_nb = vdot(rb, n);
+    p->along_na = vdot(ra, n) - radius_a; /* a disk touches with another point of it as it turns: its centre counts */
+    p->along_nb = vdot(rb, n) + radius_b;
     p->mass_n = 1 / (m + c->inverse_moment_a * p->spin_na * p->spin_na + c->inverse_moment_b * p->spin_nb * p->spin_nb);
     p->mass_t = 1 / (m + c->inverse_moment_a * p->spin_ta * p->spin_ta + c->inverse_moment_b * p->spin_tb * p->spin_tb);
     /* what a mover has done in the frame so far is in the formula of crowd_rows.c, and taken off here */
@@ -185,12 +207,13 @@ static double least_reach(const World *world, int32_t piece_a, int32_t piece_b) 
 static void set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Record *old) {
     const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
     Vec at_a = vadd(world->body[c->a].position, a->moved), at_b = vadd(world->body[c->b].position, b->moved);
+    double radius_a = world->piece[c->key >> 32].radius, radius_b = world->piece[c->key & 0xffffffffu].radius;
     c->count = m->count;
     c->normal = m->normal;
     c->turned = b->turned - a->turned;
     c->moved = vsub(b->moved, a->moved);
     for (int32_t k = 0; k < m->count; k++) {
-        fill_point(&c->point[k], &m->point[k], c, a, b, at_a, at_b);
+        fill_point(&c->point[k], &m->point[k], c, a, b, at_a, at_b, radius_a, radius_b);
         int32_t same = -1;
         double nearest = 4 * c->slack;
         for (int32_t l = 0; old && l < old->count; l++) {
@@ -301,14 +324,22 @@ static int consider(Crowd *crowd, World *world, Near near, double dt, double sub
     bool contact = false;
     Vec normal;
     double gap = box_gap(&crowd->piece_box[near.piece_a], &crowd->piece_box[near.piece_b], &normal);
-    int32_t last = gap <= soon ? index_find(&crowd->last_index, pair_key(near.piece_a, near.piece_b)) : -1;
-    if (last >= 0 && crowd->last_near[last].gap > gap) {
-        gap = crowd->last_near[last].gap;
-        normal = crowd->last_near[last].normal;
-    }
     set_near(crowd, &near, normal, gap);
-    if (gap <= soon)
-        contact = look(crowd, world, &near, soon, later + MORE * least_reach(world, near.piece_a, near.piece_b));
+    int32_t last = gap <= soon ? index_find(&crowd->last_index, pair_key(near.piece_a, near.piece_b)) : -1;
+    if (last >= 0) { /* it holds for where the frame starts */
+        Near before = near;
+        before.normal = crowd->last_near[last].normal;
+        before.gap = crowd->last_near[last].gap;
+        before.moved = vec(0, 0);
+        before.turned_a = before.turned_b = 0;
+        double kept = gap_now(crowd, &before);
+        if (kept > gap) {
+            near = before;
+            gap = kept;
+        }
+    }
+    double reach = least_reach(world, near.piece_a, near.piece_b);
+    if (gap <= soon && soon <= FAST * reach) contact = look(crowd, world, &near, soon, later + MORE * reach);
     if (!contact) crowd->near[crowd->near_count++] = near;
     if (near.gap > later) return SIM_OK;
     crowd->touched[near.a] = crowd->touched[near.b] = true;
@@ -328,11 +359,11 @@ static int consider_shapes(Crowd *crowd, World *world, Pair pair, double dt, dou
     if (!takes_part(world, sa) || !takes_part(world, sb) || !world_collides(world, pair.a, pair.b)) return SIM_OK;
     bool many = sa->piece_count > 1 || sb->piece_count > 1;
     for (int32_t p = sa->first_piece; p < sa->first_piece + sa->piece_count; p++) {
-        Box box_a = many ? swept(crowd->piece_box[p], &crowd->range[sa->body]) : crowd->piece_box[p];
+        Box box_a = many ? swept(crowd, crowd->piece_box[p], sa->body) : crowd->piece_box[p];
         if (many && !boxes_meet(&box_a, &crowd->shape_box[pair.b])) continue;
         for (int32_t q = sb->first_piece; q < sb->first_piece + sb->piece_count; q++) {
             if (many) {
-                Box box_b = swept(crowd->piece_box[q], &crowd->range[sb->body]);
+                Box box_b = swept(crowd, crowd->piece_box[q], sb->body);
                 if (!boxes_meet(&box_a, &box_b)) continue;
             }
             Near near = {.piece_a = p, .piece_b = q, .a = sa->body, .b = sb->body};
@@ -385,6 +416,12 @@ int touch_frame(Crowd *crowd, World *world, double dt, double substep) {
             if (status != SIM_OK) return status;
         }
     } while (woke);
+    for (int32_t k = 0; k < crowd->active_count; k++) {
+        Mover *m = &crowd->mover[crowd->active[k]];
+        m->moved = vec(0, 0);
+        m->turned = 0;
+    }
+    crowd->moment++; /* the outlines are ahead of the bodies */
     return SIM_OK;
 }
 
@@ -422,8 +459,8 @@ static int add_near(Crowd *crowd, const World *world, int32_t shape_a, int32_t s
     const Shape *sa = &world->shape[shape_a], *sb = &world->shape[shape_b];
     for (int32_t p = sa->first_piece; p < sa->first_piece + sa->piece_count; p++)
         for (int32_t q = sb->first_piece; q < sb->first_piece + sb->piece_count; q++) {
-            Box box_a = swept(crowd->piece_box[p], &crowd->range[sa->body]);
-            Box box_b = swept(crowd->piece_box[q], &crowd->range[sb->body]);
+            Box box_a = swept(crowd, crowd->piece_box[p], sa->body);
+            Box box_b = swept(crowd, crowd->piece_box[q], sb->body);
             if (!boxes_meet(&box_a, &box_b)) continue;
             if (index_room(&crowd->known, crowd->known.count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
             if (!index_add(&crowd->known, pair_key(p, q), 0)) continue;
@@ -466,6 +503,36 @@ static int follow_strays(Crowd *crowd, const World *world, double left, double d
     return SIM_OK;
 }
 
+static void advance(Mover *m, const Mover *from, double time) {
+    m->moved = vmad(from->moved, time, from->velocity);
+    m->turned = from->turned + time * from->spin;
+}
+
+/* Whether a fast pair becomes a contact: it is followed through the substep to where it first touches, if it does, since
+ * the sides that face each other now need not be those that meet (conservative advancement, Mirtich 1996). */
+static bool look_along(Crowd *crowd, World *world, Near *near, double dt, double later) {
+    enum { STEPS = 32 };
+    Mover *a = &crowd->mover[near->a], *b = &crowd->mover[near->b], from_a = *a, from_b = *b;
+    double time = 0, close = skin_of(world, near);
+    bool contact = false;
+    Near probe = *near;
+    for (int32_t step = 0; step < STEPS && time < dt; step++) {
+        advance(a, &from_a, time);
+        advance(b, &from_b, time);
+        touch_place(crowd, world, near->a);
+        touch_place(crowd, world, near->b);
+        contact = look(crowd, world, &probe, close, later);
+        if (step == 0) *near = probe;
+        double rate = approach(crowd, &probe, 1);
+        if (contact || rate <= 0 || probe.gap <= 0) break;
+        time += larger(probe.gap, close) / rate;
+    }
+    *a = from_a;
+    *b = from_b;
+    crowd->placed[near->a] = crowd->placed[near->b] = crowd->moment - 1;
+    return contact;
+}
+
 /* After the passes: the near pairs that may touch in the substep at the velocities found become contacts.  Whether there
  * were any; they are hot. */
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found) {
@@ -475,8 +542,10 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     for (int32_t i = 0; i < crowd->near_count; i++) {
         Near *near = &crowd->near[i];
         if (gap_now(crowd, near) <= approach(crowd, near, substep)) {
-            double soon = closing(crowd, world, near, substep), later = closing(crowd, world, near, left);
-            if (look(crowd, world, near, soon, soon + later + MORE * least_reach(world, near->piece_a, near->piece_b))) {
+            double soon = closing(crowd, world, near, substep), reach = least_reach(world, near->piece_a, near->piece_b);
+            double later = soon + closing(crowd, world, near, left) + MORE * reach;
+            bool fast = soon > FAST * reach;
+            if (fast ? look_along(crowd, world, near, substep, later) : look(crowd, world, near, soon, later)) {
                 if (crowd->mover[near->a].inverse_mass > 0) crowd->heat[near->a] = crowd->passes;
                 if (crowd->mover[near->b].inverse_mass > 0) crowd->heat[near->b] = crowd->passes;
                 continue;

@@ -5,6 +5,8 @@
  */
 #include "manifold.h"
 
+#include "broad.h"
+
 enum { SMALL = 8 }; /* outlines up to this size are searched vertex by vertex */
 
 static int32_t after(const Outline *o, int32_t i) { return i + 1 < o->count ? i + 1 : 0; }
@@ -29,6 +31,11 @@ typedef struct Facing {
     int32_t side, vertex;
     bool touches;      /* the shapes can touch there; if not, it only tells how far they are apart */
 } Facing;
+
+/* Of all sides, and of those where the shapes can touch. */
+typedef struct Facings {
+    Facing any, touching;
+} Facings;
 
 /* The vertex farthest against the normal, from `start` on. */
 static int32_t descend(const Outline *b, Vec normal, int32_t start) {
@@ -61,20 +68,31 @@ static int32_t lowest(const Outline *b, Vec normal) {
 
 /* The side of a from which b is farthest, or the first from which it is farther than `enough`.  The lowest vertex of b
  * turns with the sides of a (rotating calipers), so large outlines cost the sum of their vertices. */
-static Facing face(const Outline *a, const Outline *b, double enough) {
-    Facing best = {-INFINITY, -1, 0, false};
+static Facings face(const Outline *a, const Outline *b, double enough) {
+    Facings best = {{-INFINITY, -1, 0, false}, {-INFINITY, -1, 0, true}};
     int32_t low = 0;
     for (int32_t i = 0; i < a->count; i++) {
         Vec n = a->normal[i];
         low = b->count <= SMALL || i == 0 ? lowest(b, n) : descend(b, n, low);
         double separation = vdot(n, vsub(b->vertex[low], a->vertex[i]));
-        if (separation <= best.separation) continue;
+        if (separation <= best.touching.separation) continue;
         bool touches = !is_cut(a, i) && (b->count == 1 || exposed(b, low, vscale(n, -1)));
-        if (!touches && separation <= 0) continue;
-        best = (Facing){separation, i, low, touches};
+        Facing facing = {separation, i, low, touches};
+        if (touches) best.touching = facing;
+        if (separation > best.any.separation) best.any = facing;
         if (separation > enough) break;
     }
     return best;
+}
+
+/* Overlapping outlines touch at the side that is nearest to parting them, or nearly so, if the shapes can touch there; else
+ * other pieces of the shapes do. */
+static const double NEARLY = 3;
+
+static Facing choose(Facings f, double least) {
+    Facing none = {-INFINITY, -1, 0, false};
+    if (least > 0) return f.any;
+    return f.touching.separation >= NEARLY * least ? f.touching : none;
 }
 
 /* No contact; `gap` is how far the two are apart at least. */
@@ -102,10 +120,11 @@ static void between_circles(const Outline *a, const Outline *b, double margin, M
 
 /* a is a polygon, b a circle. */
 static void polygon_circle(const Outline *a, const Outline *b, double margin, Manifold *m) {
-    Facing f = face(a, b, margin + b->radius);
+    Facings facings = face(a, b, margin + b->radius);
+    Facing f = choose(facings, facings.any.separation);
     Vec centre = b->vertex[0];
-    if (f.side < 0) { /* beyond cuts alone: another piece of the shape touches */
-        apart(m, vec(0, 1), 0);
+    if (f.side < 0) {
+        apart(m, a->normal[facings.any.side], facings.any.separation - b->radius);
         return;
     }
     Vec n = a->normal[f.side];
@@ -196,24 +215,25 @@ static void clip(const Outline *a, const Outline *b, Facing f, bool flip, double
 }
 
 static void between_polygons(const Outline *a, const Outline *b, double margin, Manifold *m) {
-    Facing of_a = face(a, b, margin);
-    if (of_a.separation > margin) {
-        apart(m, a->normal[of_a.side], of_a.separation);
+    Facings of_a = face(a, b, margin);
+    if (of_a.any.separation > margin) {
+        apart(m, a->normal[of_a.any.side], of_a.any.separation);
         return;
     }
-    Facing of_b = face(b, a, margin);
-    if (of_b.separation > margin) {
-        apart(m, vscale(b->normal[of_b.side], -1), of_b.separation);
+    Facings of_b = face(b, a, margin);
+    if (of_b.any.separation > margin) {
+        apart(m, vscale(b->normal[of_b.any.side], -1), of_b.any.separation);
         return;
     }
-    if (of_a.side < 0 && of_b.side < 0) { /* across cuts alone: other pieces of the shapes touch */
-        apart(m, vec(0, 1), 0);
+    double least = larger(of_a.any.separation, of_b.any.separation);
+    Facing from_a = choose(of_a, least), from_b = choose(of_b, least);
+    if (from_a.side < 0 && from_b.side < 0) {
+        apart(m, a->normal[of_a.any.side], least);
         return;
     }
     /* near a tie a keeps the side, so that a resting pair does not change its mind from step to step */
-    double tie = 1e-3 * (fabs(of_a.separation) + fabs(of_b.separation));
-    bool flip = of_a.side < 0 || of_b.separation > of_a.separation + tie;
-    Facing f = flip ? of_b : of_a;
+    bool flip = from_b.separation > from_a.separation + 1e-3 * fabs(least);
+    Facing f = flip ? from_b : from_a;
     if (f.separation > 0 && !straight_out(flip ? b : a, f, flip ? a : b)) {
         Nearest nearest = {.square = INFINITY};
         nearer(a, b, false, &nearest);

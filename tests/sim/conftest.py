@@ -42,7 +42,7 @@ class Run:
     modes: np.ndarray
 
 
-REST = 1  # of the core's modes
+FIXED, REST = 0, 1  # of the core's modes
 
 
 @pytest.fixture(scope="session")

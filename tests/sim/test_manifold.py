@@ -76,6 +76,8 @@ def distance(a, b):
 def depth(a, b):
     """The least way that parts two overlapping polygons, or a polygon and a disk; negative when apart."""
     (va, ra), (vb, rb) = a, b
+    if len(va) == len(vb) == 1:
+        return ra + rb - np.linalg.norm(va[0] - vb[0])
     axes = []
     for v in (va, vb):
         if len(v) > 1:
