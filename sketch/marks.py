@@ -10,13 +10,14 @@ import numpy as np
 
 from sketch.kernel import fit_arrow, off_outline
 from sketch.outlines import RETRACE
-from sketch.pieces import Page, Piece, Point
+from sketch.pieces import Array, Page, Piece, Point
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit_of, unread
 
 __all__ = ["read_arrow", "read_bar", "read_cross", "with_strays"]
 
 MOST_BENDS = 5
 BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
+HEAD = 2.0  # nats an observation to say ink freely, where it lies within an arrow's head
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
 RARE = 15.0  # nats that an open line is rarer than an outline
 
@@ -94,7 +95,12 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
     shaft, left, right = fit.lengths
     # a stroke whose ends meet, as where a barb was drawn forth and back, is no loop
     whole = [0.55 * shaft] if len(pieces) == 1 else [p.extent / 2 for p in pieces]
-    off = sum(misfit_of(p, square, scale) for p, square, scale in zip(pieces, fit.off, whole, strict=True))
+    off = 0.0
+    for p, square, scale in zip(pieces, fit.off, whole, strict=True):
+        cost = misfit_of(p, square, scale)
+        if cost > HEAD * p.observations and p.extent < 0.6 * shaft and _within(page, p, fit.head):
+            cost = HEAD * p.observations
+        off += cost
     drawn = sum(p.length for p in pieces)
     twice = max(1 - (shaft + left + right) / drawn, 0.0)  # the share of the ink that was drawn twice
     again = FREE * twice * sum(p.observations for p in pieces)
@@ -106,6 +112,20 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
     tip, left, right = fit.head.tolist()
     figure = np.array([tail, tip, left, tip, right, tip])
     return Fitted("arrow", tuple(sorted(names)), cost, np.array([tail, tip]), figure=figure)
+
+
+def _within(page: Page, piece: Piece, head: Array) -> bool:
+    """Whether a piece lies within an arrow's head, given its tip and the ends of its barbs [pixels]."""
+    a, b, c = head
+    if (b[0] - a[0]) * (c[1] - a[1]) < (b[1] - a[1]) * (c[0] - a[0]):
+        b, c = c, b
+    reach = STRAY * (math.dist(a, b) + math.dist(a, c))
+    points = page.strokes.samples[piece.stroke]
+    for p, q in ((a, b), (b, c), (c, a)):
+        side = (q - p) / max(math.dist(p, q), 1e-9)
+        if ((points - p) @ np.array([-side[1], side[0]])).min() < -reach:
+            return False
+    return True
 
 
 def with_strays(page: Page, mark: Fitted) -> list[Fitted]:
@@ -121,6 +141,9 @@ def with_strays(page: Page, mark: Fitted) -> list[Fitted]:
             continue
         off = off_outline(page.strokes, p.stroke, mark.figure)
         cost = PARAMETER + RETRACE * p.observations + misfit_of(p, off, p.extent / 2)
+        shaft = math.dist(mark.figure[0], mark.figure[1])
+        if mark.kind == "arrow" and p.extent < 0.6 * shaft and _within(page, p, mark.figure[[1, 2, 4]]):
+            cost = min(cost, PARAMETER + HEAD * p.observations)
         if cost < unread(p):
             costs[p.index] = cost
     sets = [tuple(costs), *((j,) for j in costs)] if len(costs) > 1 else [tuple(costs)] if costs else []

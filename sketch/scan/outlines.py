@@ -20,6 +20,7 @@ from sketch.scan.junctions import LONELY, Junction, Pairs, turn_cost
 __all__ = ["close_outlines"]
 
 CLOSED = 2.5  # [rad²] what a closed outline is worth: the corner of a square that closes it
+COINCIDENCE = 0.9  # [rad²] for every further line that ends at the same place
 GAP = 0.15  # of an outline's length: what its ends may be apart
 SHORTEST = 8.0  # pen widths: less is no outline
 MOST_BRANCHES = 6  # of a junction that is looked at: there are 76 ways to pair six
@@ -82,11 +83,16 @@ def _options(junction: Junction) -> list[tuple[float, Pairs]]:
     }
     count = len(junction.branches)
     options = [
-        (sum(cost[pair] for pair in pairs) + LONELY * (count - 2 * len(pairs)), pairs)
+        (sum(cost[pair] for pair in pairs) + _ends_cost(count - 2 * len(pairs)), pairs)
         for pairs in map(list, _matchings(count))
     ]
     options.sort(key=lambda option: option[0])
     return [option for option in options if option[0] < options[0][0] + 2 * CLOSED]
+
+
+def _ends_cost(ends: int) -> float:
+    """What it costs that lines end at a junction: that several do so at one place is no coincidence."""
+    return LONELY * ends + COINCIDENCE * max(ends - 1, 0)
 
 
 @cache
