@@ -112,10 +112,14 @@ static bool is_closed(const Search *s, const Feature *f) {
 }
 
 /* Whether a closed contact is at this touch's point: corners that meet touch in more ways than one, and one holds them. */
-static bool is_held(const Search *s, const Gap *g, const Placed *pa, const Placed *pb) {
+static bool is_held(const Search *s, const Feature *f, const Gap *g, const Placed *pa, const Placed *pb) {
     for (int32_t k = 0; k < s->closed_count; k++) {
-        bool a_first = s->closed[k]->body_a == s->a.body;
-        Gap held = feature_gap(s->closed[k], a_first ? pa : pb, a_first ? pb : pa);
+        const Feature *c = s->closed[k];
+        bool same = (c->shape_a == f->shape_a && c->shape_b == f->shape_b) ||
+                    (c->shape_a == f->shape_b && c->shape_b == f->shape_a);
+        if (!same) continue;
+        bool a_first = c->body_a == s->a.body;
+        Gap held = feature_gap(c, a_first ? pa : pb, a_first ? pb : pa);
         if (vlength(vsub(held.point, g->point)) <= 8 * s->slack->gap) return true;
     }
     return false;
@@ -162,8 +166,9 @@ static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, con
             f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
         double own = feature_step(s->slack, &g, bound, steer);
         if (own <= 0 &&
-            (!faces(s->world, &f, &g, a_first ? pa : pb, a_first ? pb : pa, s->slack) || is_held(s, &g, pa, pb)))
+            (!faces(s->world, &f, &g, a_first ? pa : pb, a_first ? pb : pa, s->slack) || is_held(s, &f, &g, pa, pb)))
             own = passing;
+        if (g.gap < -s->slack->gap && g.margin < -s->slack->gap) own = fmax(own, passing); /* in behind, and beside */
         step = fmin(step, own);
     }
     return step;
