@@ -6,6 +6,7 @@
 #include "crowd.h"
 #include "posed.h"
 #include "crowd_memory.h"
+#include "crowd_pivots.h"
 
 /* Two pieces whose boxes meet but that do not touch yet: they cannot before the gap along the normal is used up. */
 typedef struct Near {
@@ -51,10 +52,7 @@ struct Crowd {
     Contact *contact;
     int32_t contact_count, contact_capacity;
     Memory memory;
-    Pivot *pivot;        /* by joint of the world; the first pivot_count are of moving bodies */
-    int32_t *pivot_joint;
-    int32_t pivot_count;
-    Vec *joint_impulse;  /* by joint: kept for warm starting */
+    Pivots pivots;
     /* crowd_rest.c */
     Vec *still_position; /* by body: where it was when it last moved */
     double *still_angle, *still_time;

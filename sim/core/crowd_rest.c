@@ -105,8 +105,8 @@ static void join(int32_t *island, int32_t i, int32_t j) {
 /* Bodies on joints rest together. */
 static void find_islands(Crowd *crowd, const World *world) {
     for (int32_t i = 0; i < world->body_count; i++) crowd->island[i] = i;
-    for (int32_t i = 0; i < crowd->pivot_count; i++) {
-        const Pivot *p = &crowd->pivot[i];
+    for (int32_t i = 0; i < crowd->pivots.count; i++) {
+        const Pivot *p = &crowd->pivots.pivot[i];
         if (crowd_moves(world, p->a) && crowd_moves(world, p->b)) join(crowd->island, p->a, p->b);
     }
 }

@@ -10,12 +10,6 @@
 
 static const double RATE = 0.4; /* share of an overlap that a pass drives out */
 
-Soft soft(double frequency, double damping, double dt) {
-    double omega = 2 * 3.14159265358979323846 * frequency;
-    double a1 = 2 * damping + dt * omega, a2 = dt * omega * a1, a3 = 1 / (1 + a2);
-    return (Soft){omega / a1, a2 * a3, a3};
-}
-
 static inline void push(const Contact *c, Mover *a, Mover *b, Vec direction, double spin_a, double spin_b, double impulse) {
     a->velocity = vmad(a->velocity, -impulse * c->inverse_mass_a, direction);
     a->spin -= impulse * c->inverse_moment_a * spin_a;
@@ -195,46 +189,5 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
             solve_normal(c, p, &mover[c->a], &mover[c->b], -c->elasticity * p->approach);
             p->approach = 0;
         }
-    }
-}
-
-/* An arm turned by a small angle since the frame began. */
-static inline Vec turned_arm(Vec arm, double angle) {
-    double c = 1 - 0.5 * angle * angle, s = angle * (1 - angle * angle / 6);
-    return vec(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
-}
-
-void pivots_warm_start(Pivot *pivot, int32_t count, Mover *mover) {
-    for (int32_t i = 0; i < count; i++) {
-        Pivot *p = &pivot[i];
-        Mover *a = &mover[p->a], *b = &mover[p->b];
-        a->velocity = vmad(a->velocity, -a->inverse_mass, p->impulse);
-        a->spin -= a->inverse_moment * vcross(turned_arm(p->arm_a, a->turned), p->impulse);
-        b->velocity = vmad(b->velocity, b->inverse_mass, p->impulse);
-        b->spin += b->inverse_moment * vcross(turned_arm(p->arm_b, b->turned), p->impulse);
-    }
-}
-
-void pivots_solve(Pivot *pivot, int32_t count, Mover *mover, Soft soft) {
-    for (int32_t i = 0; i < count; i++) {
-        Pivot *p = &pivot[i];
-        Mover *a = &mover[p->a], *b = &mover[p->b];
-        Vec ra = turned_arm(p->arm_a, a->turned), rb = turned_arm(p->arm_b, b->turned);
-        Vec apart = vadd(p->apart, vadd(vsub(b->moved, a->moved),
-                                        vsub(vsub(rb, p->arm_b), vsub(ra, p->arm_a))));
-        Vec v = vsub(vmad(b->velocity, b->spin, vperp(rb)), vmad(a->velocity, a->spin, vperp(ra)));
-        v = vmad(v, soft.rate, apart);
-        double m = a->inverse_mass + b->inverse_mass, ia = a->inverse_moment, ib = b->inverse_moment;
-        double k11 = m + ia * ra.y * ra.y + ib * rb.y * rb.y;
-        double k12 = -ia * ra.x * ra.y - ib * rb.x * rb.y;
-        double k22 = m + ia * ra.x * ra.x + ib * rb.x * rb.x;
-        double det = 1 / (k11 * k22 - k12 * k12);
-        Vec j = vec(-soft.mass * det * (k22 * v.x - k12 * v.y) - soft.impulse * p->impulse.x,
-                    -soft.mass * det * (k11 * v.y - k12 * v.x) - soft.impulse * p->impulse.y);
-        p->impulse = vadd(p->impulse, j);
-        a->velocity = vmad(a->velocity, -a->inverse_mass, j);
-        a->spin -= a->inverse_moment * vcross(ra, j);
-        b->velocity = vmad(b->velocity, b->inverse_mass, j);
-        b->spin += b->inverse_moment * vcross(rb, j);
     }
 }

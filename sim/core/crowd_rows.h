@@ -1,4 +1,4 @@
-/* The rows that a crowd's substep solves for: contact points and pivots between moving bodies. */
+/* The rows that a crowd's substep solves for: contact points between moving bodies. */
 #ifndef ROWS_H
 #define ROWS_H
 
@@ -15,15 +15,6 @@ typedef struct Mover {
     double turned;
     double inverse_mass, inverse_moment;
 } Mover;
-
-/* A soft row (Catto, "Solver2D", 2024): a spring and damper given by frequency and damping ratio, integrated implicitly. */
-typedef struct Soft {
-    double rate;    /* velocity wanted per metre of error [1/s] */
-    double mass;    /* share of the impulse that a rigid row would take */
-    double impulse; /* share of the impulse so far that is given back */
-} Soft;
-
-Soft soft(double frequency, double damping, double dt);
 
 typedef struct Point {
     double separation;           /* when the frame began */
@@ -54,14 +45,6 @@ typedef struct Contact {
     Point point[2];
 } Contact;
 
-typedef struct Pivot {
-    int32_t a, b;
-    Vec local_a, local_b;
-    Vec arm_a, arm_b;    /* in the scene's frame when the frame began */
-    Vec apart;           /* then */
-    Vec impulse;
-} Pivot;
-
 /* Once for each contact of a substep, before it is solved. */
 void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double dt);
 void contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold);
@@ -71,8 +54,5 @@ void contacts_measure(Contact *contact, int32_t count, const Mover *mover, doubl
 bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first);
 void contacts_part(Contact *contact, int32_t count, Mover *mover);
 void contacts_bounce(Contact *contact, int32_t count, Mover *mover);
-
-void pivots_warm_start(Pivot *pivot, int32_t count, Mover *mover);
-void pivots_solve(Pivot *pivot, int32_t count, Mover *mover, Soft soft);
 
 #endif

@@ -249,6 +249,32 @@ def test_the_heavy_on_the_light(crowd, ratio):
     assert np.abs(run.velocities[-1]).max() < 1e-3
 
 
+def test_a_chain_with_a_heavy_end_hangs_together(crowd):
+    n = 30
+    links = [box(f"l{i}", 0.5 * (i + 0.5), 0, 0.5, 0.1) for i in range(n)]
+    joints = [{"bodies": [f"l{i - 1}" if i else None, f"l{i}"], "position": [0.5 * i, 0]} for i in range(n)]
+    end = ball("end", 0.5 * n + 0.3, 0, 0.3, density=20)
+    joints.append({"bodies": [f"l{n - 1}", "end"], "position": [0.5 * n, 0]})
+    s = scene(*links, end, joints=joints)
+    run = crowd(s, 5)
+    c, si = np.cos(run.angles[:, :n]), np.sin(run.angles[:, :n])
+    arm = 0.25 * np.stack([c, si], 2)
+    gaps = np.linalg.norm(
+        run.positions[:, 1:n] - arm[:, 1:] - run.positions[:, : n - 1] - arm[:, :-1], axis=2
+    )
+    assert gaps.max() < 0.05
+    e = energy(s, run)
+    assert e.max() - e[0] < 0.02 * (e[0] - s.bodies[-1].mass_properties()[0] * -G * 15)
+
+
+def test_a_wheel_jammed_between_walls_stays(crowd):
+    sides = [box("l", -1.49, 0, 2, 4, anchored=True), box("r", 1.49, 0, 2, 4, anchored=True)]
+    s = scene(*sides, ball("w", 0, 0, 0.5, angular_velocity=5))
+    run = crowd(s, 3)
+    assert np.abs(run.positions[-1, 2]).max() < 0.1
+    assert np.abs(run.velocities).max() < 3
+
+
 @pytest.mark.parametrize("speed", [10.0, 100.0, 1000.0, 20000.0])
 @pytest.mark.parametrize("shape", [ball, box])
 @pytest.mark.parametrize("angle", [0.0, 0.4])
