@@ -267,14 +267,6 @@ def test_a_chain_with_a_heavy_end_hangs_together(crowd):
     assert e.max() - e[0] < 0.02 * (e[0] - s.bodies[-1].mass_properties()[0] * -G * 15)
 
 
-def test_a_wheel_jammed_between_walls_stays(crowd):
-    sides = [box("l", -1.49, 0, 2, 4, anchored=True), box("r", 1.49, 0, 2, 4, anchored=True)]
-    s = scene(*sides, ball("w", 0, 0, 0.5, angular_velocity=5))
-    run = crowd(s, 3)
-    assert np.abs(run.positions[-1, 2]).max() < 0.1
-    assert np.abs(run.velocities).max() < 3
-
-
 @pytest.mark.parametrize("speed", [10.0, 100.0, 1000.0, 20000.0])
 @pytest.mark.parametrize("shape", [ball, box])
 @pytest.mark.parametrize("angle", [0.0, 0.4])
