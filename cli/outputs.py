@@ -76,7 +76,12 @@ class Outputs:
         if target == STDOUT:
             self._stdout.append(content)
         else:
-            Path(self.stage(target)).write_bytes(content)
+            beside = self.stage(target)
+            try:
+                Path(beside).write_bytes(content)
+            except OSError as e:
+                e.filename = beside  # which a failing write leaves out
+                raise
 
     def __exit__(
         self, kind: type[BaseException] | None, e: BaseException | None, tb: TracebackType | None
@@ -91,6 +96,8 @@ class Outputs:
                     sys.stdout.buffer.write(content)
                 sys.stdout.flush()
         finally:
+            if isinstance(e, OSError):  # in the words of who asked for the file
+                e.filename = dict(self._beside).get(e.filename, e.filename)
             for beside, _ in self._beside:
                 with contextlib.suppress(FileNotFoundError):
                     os.unlink(beside)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import TYPE_CHECKING, Any
 
 from cli.arguments import number
@@ -67,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
 
             files.write(options.overlay, png(overlay(recognition)))
     if options.explain:
-        print(explanation(recognition))
+        print(explanation(recognition), file=sys.stderr if output == STDOUT else sys.stdout)
     return 0
 
 

@@ -164,11 +164,14 @@ class Figure:
         """Whether each placed frame (n, points, 2) but the first looks different from the one before."""
         if not self.parts:
             return np.zeros(len(placed) - 1, bool)
-        starts = [where.start for where in self._slices]
-        moved = np.any(placed[1:] != placed[:-1], axis=2)
-        parts_moved = np.logical_or.reduceat(moved, starts, axis=1)
         seen = self.visible(placed)
-        return np.asarray(np.any(parts_moved & (seen[1:] | seen[:-1]), axis=1))
+        moved = self.differences(placed[1:], placed[:-1]) > 0
+        return np.asarray(np.any(moved & (seen[1:] | seen[:-1]), axis=1))
+
+    def differences(self, placed: Points, other: Points) -> Points:
+        """How far each part's farthest point lies between two placings (..., points, 2), by column or row."""
+        starts = [where.start for where in self._slices]
+        return np.maximum.reduceat(np.abs(placed - other).max(axis=-1), starts, axis=-1)
 
     def boxes(self, placed: Points) -> list[Box]:
         """For each placed frame (n, points, 2) a box of even sides around all parts in the picture."""

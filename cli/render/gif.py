@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from cli.render.animation import PLAIN, Extras, Sheet, drawn, frame_count
 from cli.render.canvas import Canvas
 from cli.render.figure import Figure
+from cli.render.video import writing
 
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
@@ -43,7 +44,7 @@ def write_gif(
     palette = choose_palette(_samples(figure, motion, page))
     nearest = _nearest(palette)
     page.used = [page.whole]
-    with av.open(path, "w", format="gif", options={"loop": "0"}) as container:
+    with writing(path), av.open(path, "w", format="gif", options={"loop": "0"}) as container:
         stream: Any = container.add_stream("gif", rate=Fraction(100))
         (stream.width, stream.height), stream.pix_fmt = size, "pal8"
         stream.codec_context.time_base = Fraction(1, 100)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cli.render.animation import changes
+from cli.render.animation import CHUNK
 from cli.render.backdrop import round_length
-from cli.render.canvas import Canvas
+from cli.render.canvas import ONE, Canvas
 from cli.render.figure import Figure
 
 if TYPE_CHECKING:
@@ -52,6 +52,16 @@ def strobe(figure: Figure, motion: Trajectory) -> Canvas:
 
 
 def _last_change(figure: Figure, motion: Trajectory) -> int:
-    """The last sample that shows something that was not there before."""
-    found = np.flatnonzero(changes(figure, motion, len(motion)))
-    return int(found[-1]) if len(found) else 0
+    """The first sample from which on nothing in the picture moves by more than a pixel."""
+    if not figure.parts:
+        return 0
+    end = figure.place(motion.positions[-1:], motion.angles[-1:])
+    for stop in range(len(motion), 0, -CHUNK):
+        span = slice(max(0, stop - CHUNK), stop)
+        placed = figure.place(motion.positions[span], motion.angles[span])
+        away = figure.differences(placed, end) > ONE
+        seen = figure.visible(placed) | figure.visible(end)
+        moved = np.flatnonzero((away & seen).any(axis=1))
+        if len(moved):
+            return min(span.start + int(moved[-1]) + 1, len(motion) - 1)
+    return 0

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import queue
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -18,7 +20,7 @@ from cli.render.figure import Figure
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
 
-__all__ = ["CODECS", "sheet", "write_video"]
+__all__ = ["CODECS", "sheet", "write_video", "writing"]
 
 AHEAD = 4  # frames drawn but not yet encoded
 PIXELS = "nv12"  # yuv420p with the colours side by side, as x264 keeps it: two planes to draw on, not three
@@ -69,7 +71,10 @@ def write_video(
     codec = CODECS[ending]
     rate = Fraction(fps).limit_denominator(100_000)
     size = figure.pen.size
-    with av.open(path, "w", format=codec.container, options=codec.container_options) as container:
+    with (
+        writing(path),
+        av.open(path, "w", format=codec.container, options=codec.container_options) as container,
+    ):
         stream: Any = container.add_stream(codec.name, rate=rate, options=codec.options)
         (stream.width, stream.height), stream.pix_fmt = size, codec.pixels
         stream.codec_context.time_base = 1 / rate
@@ -83,13 +88,25 @@ def write_video(
             number, done = item
             done.frame.pts, done.frame.time_base = number, 1 / rate
             container.mux(stream.encode(done.frame))
-            free.put(done)
 
-        with _Worker(encode, AHEAD) as encoder:
+        with _Worker(encode, lambda item: free.put(item[1]), AHEAD) as encoder:
             for item in drawn(figure, motion, fps, free.get, extras):
                 encoder.put(item)
                 progress((item[0] + 1) / frame_count(motion))
         container.mux(stream.encode(None))
+
+
+@contextlib.contextmanager
+def writing(path: str) -> Iterator[None]:
+    """Turn the library's words for a full disk and the like into Python's."""
+    import av
+
+    try:
+        yield
+    except av.FFmpegError as e:
+        if e.errno is None or e.errno <= 0:
+            raise
+        raise OSError(e.errno, os.strerror(e.errno), path) from e
 
 
 def sheet(size: tuple[int, int]) -> Sheet:
@@ -112,10 +129,13 @@ def _tag_colors(codec: Any) -> None:
 
 
 class _Worker:
-    """A thread that takes items from a short queue; what it raises is raised again where items are put."""
+    """A thread that works on the items of a short queue; what it raises is raised again where items are put.
 
-    def __init__(self, work: Callable[[Any], None], ahead: int) -> None:
-        self._work, self._items = work, queue.Queue[Any](ahead)
+    release: is given every item afterwards, also those that are dropped because an earlier one failed.
+    """
+
+    def __init__(self, work: Callable[[Any], None], release: Callable[[Any], None], ahead: int) -> None:
+        self._work, self._release, self._items = work, release, queue.Queue[Any](ahead)
         self._failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run, daemon=True)
 
@@ -126,6 +146,7 @@ class _Worker:
                     self._work(item)
                 except BaseException as e:
                     self._failure = e
+            self._release(item)
 
     def put(self, item: Any) -> None:
         self._items.put(item)

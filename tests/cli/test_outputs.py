@@ -96,3 +96,21 @@ def test_a_closed_pipe_is_no_traceback(scene_file: Path) -> None:
         stderr = process.stderr.read().decode()
     assert process.returncode == 1
     assert stderr == "error: standard output was closed before all was written\n"
+
+
+@pytest.mark.parametrize("ending", ["mp4", "webm", "gif", "html", "json"])
+def test_a_disk_that_is_full_is_told_and_nothing_is_left(scene_file: Path, ending: str) -> None:
+    """Files of more than 4 kB are refused, as a full disk would."""
+    resource = pytest.importorskip("resource")
+    out = scene_file.parent / f"run.{ending}"
+    run = subprocess.run(
+        [sys.executable, "-m", "cli", "simulate", str(scene_file), "-o", str(out), "--size", "320x240"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=30,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
+    )
+    assert run.returncode == 1
+    assert run.stderr.splitlines()[-1] == f"error: {out}: file too large"
+    assert os.listdir(scene_file.parent) == ["scene.json"]

@@ -81,6 +81,15 @@ def test_explanation_names_every_reading(sketch_file: Path, capsys: pytest.Captu
         assert word in text
 
 
+def test_explanation_leaves_standard_output_to_the_scene(
+    sketch_file: Path, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    assert main(["recognize", str(sketch_file), "--explain", "-o", "-"]) == 0
+    captured = capfdbinary.readouterr()
+    assert len(Scene.from_json(captured.out).bodies) == 2
+    assert b"rectangle" in captured.err
+
+
 def test_drawing_to_video_falls_and_rests(sketch_file: Path) -> None:
     out = sketch_file.parent / "run"
     argv = ["simulate", str(sketch_file), "-o", f"{out}.mp4", "-o", f"{out}.json", "--duration", "3"]

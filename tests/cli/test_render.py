@@ -164,6 +164,16 @@ def test_strobe_shows_the_start_the_end_and_ghosts_between(scene: Scene, straigh
     assert np.abs(at_start - np.array(mix((0, 0, 255), CLEAN.paper, 0.62)[::-1])).max() < 45
 
 
+def test_strobe_ends_where_the_motion_does(scene: Scene, straight: Straight) -> None:
+    """Of ten seconds the ball moves for one: the end is where it stops, with the ghosts before it."""
+    motion = straight(scene, duration=10.0)
+    motion.positions[20:] = motion.positions[20]
+    motion.positions[20:, 1, 0] += 0.2 / 160 * np.sin(np.arange(len(motion) - 20))  # a fifth of a pixel
+    figure = Figure(scene, fit(scene, (640, 480)), CLEAN)
+    short, long = (strobe(figure, m).planes[0] for m in (straight(scene, duration=1.0), motion))
+    assert (np.abs(short.astype(int) - long).max(axis=2) > 40).mean() < 0.002
+
+
 @pytest.mark.parametrize(
     ("metres", "bar"), [(1.0, 1), (1.99, 1), (2.0, 2), (7, 5), (0.034, 0.02), (1200, 1000)]
 )

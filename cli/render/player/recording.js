@@ -59,8 +59,7 @@ const UNITS = { position: "m", velocity: "m/s", energy: "J", momentum: "N s; L i
 
 function floats(base64) {
   const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-  const view = new DataView(bytes.buffer);
-  return Float32Array.from({ length: bytes.length / 4 }, (_, i) => view.getFloat32(4 * i, true));
+  return new Float32Array(bytes.buffer); // little-endian, as every browser's machine is
 }
 
 class Player {
