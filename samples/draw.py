@@ -243,10 +243,8 @@ def marbles(page: Page) -> None:
     runs = [((94, 140), (990, 290)), ((1186, 390), (270, 550))]
     for a, b in runs:
         page.beam(a, b, 26, anchored=True)
-    page.polygon(
-        [(96, 612), (120, 612), (120, 672), (226, 672), (226, 612), (250, 612), (250, 704), (96, 704)],
-        anchor=(173, 688),
-    )
+    cup = [(96, 600), (126, 600), (126, 666), (226, 666), (226, 600), (256, 600), (256, 706), (96, 706)]
+    page.anchor(page.polygon(cup), (176, 686), 26)
     a, b = runs[0]
     for k in range(3):
         page.circle(along(a, b, 60 + 62 * k, 36), 22)
