@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["png", "strobe"]
 
-FLASHES = 7  # at least so many ghosts; at most 2.5 times as many, because their interval is a round number
+FLASHES = 9  # at least so many ghosts; at most 2.5 times as many, because their interval is a round number
 FADE = 0.62  # how pale a ghost is
 
 
@@ -47,7 +47,7 @@ def strobe(figure: Figure, motion: Trajectory) -> Canvas:
     for k in range(0, end, step):
         figure.fill(canvas, figure.place(motion.positions[k], motion.angles[k]), FADE)
     figure.fill(canvas, figure.place(motion.positions[end], motion.angles[end]))
-    figure.caption(canvas, f"every {step * interval:.3g} s, to {motion.times[end]:.1f} s")
+    figure.caption(canvas, f"every {step * interval:.3g} s, to {motion.times[end]:.3g} s")
     return canvas
 
 
