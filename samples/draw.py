@@ -402,7 +402,7 @@ def scene_json(scene: dict[str, Any]) -> str:
     return "{" + ",\n ".join(parts) + "}\n"
 
 
-PICTURES = {"pendulum-on-paper.jpg": ("pendulum", "photo"), "linkage-on-paper.png": ("linkage", "scan")}
+PICTURES = {"pendulum-on-paper.jpg": ("pendulum", "photo"), "cradle-on-paper.png": ("cradle", "scan")}
 
 
 def files() -> dict[str, str]:
