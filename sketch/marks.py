@@ -93,8 +93,12 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
     if fit is None:
         return None
     shaft, left, right = fit.lengths
-    # a stroke whose ends meet, as where a barb was drawn forth and back, is no loop
-    whole = [0.55 * shaft] if len(pieces) == 1 else [p.extent / 2 for p in pieces]
+    # an arrow whose ends meet is no loop, nor a barb that was drawn forth and back
+    whole = (
+        [0.55 * shaft]
+        if len(pieces) == 1
+        else [p.extent / 2 if p.extent < 0.6 * shaft else None for p in pieces]
+    )
     off = 0.0
     for p, square, scale in zip(pieces, fit.off, whole, strict=True):
         cost = misfit_of(p, square, scale)
