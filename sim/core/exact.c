@@ -85,6 +85,7 @@ static int32_t closed_features(Exact *e, int32_t a, int32_t b) {
 static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     Track *ta = &e->track[a], *tb = &e->track[b];
     if (ta->motion.degree == 0 && tb->motion.degree == 0) return;
+    if (b == 0 && e->world->body[0].shape_count == 0) return;
     double to = fmin(e->end, fmin(ta->motion.end, tb->motion.end));
     if (a != 0) to = fmin(to, fmax(ta->touch_time, b != 0 ? tb->touch_time : 0)); /* later ones are asked for again */
     if (to <= from) return;

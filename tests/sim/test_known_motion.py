@@ -1,0 +1,125 @@
+"""Scenes whose motion is known, run at every tolerance: the error stays within what was asked for."""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+import pytest
+
+from sim import Body, Circle, Joint, Rectangle, Scene, simulate
+from sim.bench.cases import CASES, Case, case_error
+
+BY_NAME = {case.name: case for case in CASES}
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_error_keeps_to_the_tolerance(case: Case, tolerance: float) -> None:
+    run = simulate(case.scene, duration=case.duration, fps=60, tolerance=tolerance)
+    assert case_error(case, run.times, run.positions, run.angles) <= 3 * tolerance
+    assert run.profile["crowd_steps"] == 0
+
+
+@pytest.mark.parametrize("name", ["projectile", "spinning bounce", "unequal disks", "corner impact"])
+def test_flights_and_impacts_are_exact(name: str) -> None:
+    case = BY_NAME[name]
+    run = simulate(case.scene, duration=case.duration, fps=60)
+    assert case_error(case, run.times, run.positions, run.angles) < 1e-12
+
+
+@pytest.mark.parametrize("name", ["pendulum", "double pendulum", "triple pendulum"])
+def test_coarse_is_cheaper_than_fine(name: str) -> None:
+    case = BY_NAME[name]
+    evaluations = [
+        simulate(case.scene, duration=case.duration, tolerance=t).profile["smooth_evals"]
+        for t in (1e-3, 1e-5, 1e-7)
+    ]
+    assert evaluations[0] < evaluations[1] < evaluations[2] < 4 * evaluations[0]
+
+
+def test_energy_of_a_frictionless_machine_is_kept() -> None:
+    case = BY_NAME["triple pendulum"]
+    run = simulate(case.scene, duration=case.duration, tolerance=1e-7)
+    assert np.ptp(run.energy[:, 2]) < 1e-6 * np.ptp(run.energy[:, 0])
+
+
+# ---------------------------------------------------------------- what a scene does not need is not done
+
+
+def test_a_flight_is_one_flight() -> None:
+    profile = simulate(BY_NAME["projectile"].scene, duration=10).profile
+    assert profile["flights"] == 1
+    assert profile["smooth_steps"] == profile["crowd_steps"] == profile["impacts"] == profile["pairs"] == 0
+
+
+def test_rest_costs_nothing_for_an_hour() -> None:
+    profile = simulate(BY_NAME["tower of 10"].scene, duration=3600, fps=1).profile
+    assert profile["rests"] == 1
+    assert profile["smooth_steps"] == profile["crowd_steps"] == 0
+    assert profile["events"] <= 10
+
+
+def test_a_flight_beside_a_resting_tower_costs_nothing_more() -> None:
+    tower = BY_NAME["tower of 10"].scene
+    ball = Body(id="ball", shape=Circle(0.1), position=(20.0, 1.1), elasticity=0.8, friction=0.0)
+    both = Scene(bodies=[*tower.bodies, ball], gravity=tower.gravity)
+    profile = simulate(both, duration=3).profile
+    assert profile["smooth_steps"] == 0
+    assert profile["rests"] == 1
+
+
+# ---------------------------------------------------------------- events
+
+
+def test_an_impact_tells_when_where_and_how_hard() -> None:
+    run = simulate(BY_NAME["spinning bounce"].scene, duration=0.5)
+    impact = next(e for e in run.events if e.kind == "impact")
+    fall = np.sqrt(2 / 9.81)
+    assert impact.time == pytest.approx(fall, abs=1e-12)
+    assert impact.bodies == ("ground", "a")
+    assert impact.point == pytest.approx((2 * fall, 0), abs=1e-12)
+    mass = np.pi * 0.2**2
+    assert impact.impulse[1] == pytest.approx(mass * 1.7 * 9.81 * fall, rel=1e-12)
+    assert (
+        abs(impact.impulse[0]) == pytest.approx(0.2 * impact.impulse[1], rel=1e-9)
+        or abs(impact.impulse[0]) < 0.2 * impact.impulse[1]
+    )
+
+
+def test_contacts_begin_and_end_and_rest_is_told() -> None:
+    run = simulate(BY_NAME["bounces to rest"].scene, duration=2.0)
+    kinds = [e.kind for e in run.events]
+    assert kinds[-2:] == ["contact begun", "rest"]
+    e = 0.5
+    fall = np.sqrt(2 / 9.81)
+    assert run.events[-1].time == pytest.approx(fall * (1 + 2 * e / (1 - e)), abs=0.01)
+    assert [t.time for t in run.events] == sorted(t.time for t in run.events)
+
+
+def test_sliding_off_an_edge_ends_the_contact_there() -> None:
+    table = Body(id="table", shape=Rectangle((2.0, 1.0)), position=(0.0, -0.5), anchored=True, friction=0.0)
+    ball = Body(
+        id="ball", shape=Circle(0.1), position=(0.0, 0.1), velocity=(2.0, 0.0), friction=0.0, elasticity=0.0
+    )
+    run = simulate(Scene(bodies=[table, ball], gravity=(0, -9.81)), duration=1.0)
+    ended = [e for e in run.events if e.kind == "contact ended"]
+    # at 2 m/s on a radius of 0.1 m gravity is too weak to turn the ball about the edge: v^2 / r > g
+    assert ended[-1].time == pytest.approx(0.5, abs=1e-5)
+    assert run.positions[-1, 1, 0] == pytest.approx(2.0, abs=1e-4)
+
+
+# ---------------------------------------------------------------- the same bits
+
+
+def test_every_run_gives_the_same_bits() -> None:
+    chain = [Body(id=f"c{k}", shape=Rectangle((0.5, 0.1)), position=(0.25 + 0.5 * k, 3.0)) for k in range(4)]
+    joints = [Joint(bodies=(f"c{k - 1}" if k else None, f"c{k}"), position=(0.5 * k, 3.0)) for k in range(4)]
+    box = Body(id="box", shape=Rectangle((0.6, 0.4)), position=(-1.0, 2.0), angle=0.3, angular_velocity=1.0)
+    floor = Body(id="floor", shape=Rectangle((20.0, 1.0)), position=(0.0, -0.5), anchored=True)
+    scene = Scene(bodies=[*chain, box, floor], joints=joints, gravity=(0, -9.81))
+
+    def digest() -> str:
+        return hashlib.sha256(simulate(scene, duration=3.0).positions.tobytes()).hexdigest()
+
+    assert len({digest() for _ in range(3)}) == 1
