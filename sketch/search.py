@@ -13,7 +13,7 @@ def best_packing(groups: Sequence[frozenset[int]], gains: Sequence[float]) -> li
     Ink that no chosen group has stays unexplained and gains nothing. Groups that share ink, however
     indirectly, form a cluster; each cluster is solved by branch and bound: take the first piece of ink
     still open, try every group that has it and leaving it out, and give up where even the best share of
-    each remaining piece cannot win.
+    each remaining piece cannot win, or where the same pieces were settled before with no less gain.
     """
     chosen: list[int] = []
     for cluster in _clusters(groups):
@@ -41,37 +41,40 @@ def _clusters(groups: Sequence[frozenset[int]]) -> list[list[int]]:
 
 
 def _solve(cluster: list[int], groups: Sequence[frozenset[int]], gains: Sequence[float]) -> list[int]:
-    pieces = sorted({i for g in cluster for i in groups[g]})
-    of: dict[int, list[int]] = {i: [] for i in pieces}
-    share = dict.fromkeys(pieces, 0.0)  # the most that a piece can bring: a group's gain split evenly
-    for g in sorted(cluster, key=lambda g: -gains[g]):
+    bit = {i: 1 << k for k, i in enumerate(sorted({i for g in cluster for i in groups[g]}))}
+    every = (1 << len(bit)) - 1
+    share = dict.fromkeys(bit, 0.0)  # the most that a piece can bring: a group's gain split evenly
+    for g in cluster:
         for i in groups[g]:
-            of[i].append(g)
             share[i] = max(share[i], gains[g] / len(groups[g]))
+    # For each piece the groups that have it, the best first: index, pieces as bits, gain, hope given up.
+    choices: dict[int, list[tuple[int, int, float, float]]] = {b: [] for b in bit.values()}
+    for g in sorted(cluster, key=lambda g: -gains[g]):
+        choice = (g, sum(bit[i] for i in groups[g]), gains[g], sum(share[i] for i in groups[g]))
+        for i in groups[g]:
+            choices[bit[i]].append(choice)
+    share_of = {bit[i]: hope for i, hope in share.items()}
     best, best_set = -1.0, list[int]()
-    taken: set[int] = set()
+    reached: dict[int, float] = {}  # by the pieces that are settled, the gain that they were settled with
     picked: list[int] = []
 
-    def branch(at: int, gain: float, hope: float) -> None:
+    def branch(settled: int, gain: float, hope: float) -> None:
         nonlocal best, best_set
-        while at < len(pieces) and pieces[at] in taken:
-            at += 1
         if gain > best:
             best, best_set = gain, list(picked)
-        if at == len(pieces) or gain + hope <= best:
+        if gain + hope <= best or reached.get(settled, -1.0) >= gain:
             return
-        first = pieces[at]
-        for g in of[first]:
-            group = groups[g]
-            if taken.isdisjoint(group):
-                taken.update(group)
+        reached[settled] = gain
+        free = every & ~settled
+        if not free:
+            return
+        first = free & -free
+        for g, pieces, its_gain, its_hope in choices[first]:
+            if not settled & pieces:
                 picked.append(g)
-                branch(at + 1, gain + gains[g], hope - sum(share[i] for i in group))
+                branch(settled | pieces, gain + its_gain, hope - its_hope)
                 picked.pop()
-                taken.difference_update(group)
-        taken.add(first)
-        branch(at + 1, gain, hope - share[first])
-        taken.discard(first)
+        branch(settled | first, gain, hope - share_of[first])
 
     branch(0, 0.0, sum(share.values()))
     return best_set
