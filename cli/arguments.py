@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
-__all__ = ["Parser", "UsageError", "number", "picture_size", "vector", "whole_number"]
+__all__ = ["Parser", "PrintVersion", "UsageError", "number", "picture_size", "vector", "whole_number"]
 
 MAX_SIDE = 7680  # 8K; beyond it players and H.264 levels give up
 
@@ -31,18 +31,21 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         raise UsageError(re.sub(r"^argument ", "", message), f"`{self.prog} --help` lists the options")
 
-    class Flag(argparse.Action):
-        """An option without a value that prints a line and ends the program."""
 
-        def __init__(self, option_strings: Sequence[str], dest: str) -> None:
-            super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help="print the version")
+class PrintVersion(argparse.Action):
+    """Looks the version up only when asked: importlib.metadata takes longer than the rest of the parser."""
 
-        def announce(self) -> str:
-            raise NotImplementedError
+    def __init__(self, option_strings: Sequence[str], dest: str) -> None:
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help="print the version")
 
-        def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-            print(self.announce())
-            parser.exit(0)
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            print(f"sketchsim {version('sketchsim')}")
+        except PackageNotFoundError:
+            print("sketchsim, running from its source folder")
+        parser.exit(0)
 
 
 def number(above: float, at_most: float) -> Callable[[str], float]:

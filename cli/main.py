@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
-from cli.arguments import Parser, UsageError
+from cli.arguments import Parser, PrintVersion, UsageError
 from cli.commands import batch, bench, completion, doctor, recognize, simulate
 from cli.progress import error
 
@@ -31,7 +31,7 @@ exit status: 0 done, 1 something inside failed, 2 wrong usage, 3 bad input
 
 def build_parser() -> Parser:
     parser = Parser(prog="sketchsim", description="Draw a machine, watch it run.", epilog=EPILOG)
-    parser.add_argument("--version", action=_PrintVersion)
+    parser.add_argument("--version", action=PrintVersion)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for command in (recognize, simulate, batch, bench, doctor, completion):
         command.add_to(commands)
@@ -106,15 +106,3 @@ def _terminate_as_interrupt() -> Callable[[], object]:
 
     before = signal.signal(signal.SIGTERM, interrupt)
     return lambda: signal.signal(signal.SIGTERM, before)
-
-
-class _PrintVersion(Parser.Flag):
-    """Looks the version up only when asked: importlib.metadata takes longer than the rest of the parser."""
-
-    def announce(self) -> str:
-        from importlib.metadata import PackageNotFoundError, version
-
-        try:
-            return f"sketchsim {version('sketchsim')}"
-        except PackageNotFoundError:
-            return "sketchsim, running from its source folder"

@@ -30,7 +30,7 @@ def test_scene_to_data_needs_no_heavy_library(scene_file: Path, output: str) -> 
     target = output if output == "-" else str(scene_file.parent / output)
     loaded = modules_after("simulate", str(scene_file), "-o", target)
     assert "numpy" in loaded
-    assert not loaded & {"cv2", "scipy", "av", "pymunk", "matplotlib", "asyncio"}
+    assert not loaded & {"cv2", "scipy", "av", "pymunk", "matplotlib", "asyncio", "sketch"}
 
 
 def test_help_needs_no_numpy() -> None:
