@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import struct
 import sys
 from array import array
 from pathlib import Path
@@ -46,6 +47,7 @@ _PROFILE = (
 )
 
 _BODY_DOUBLES = 11  # of SimBody
+_EVENT = struct.Struct("=d4i4d")  # SimEvent
 
 
 class _Input(ctypes.Structure):
@@ -64,17 +66,6 @@ class _Input(ctypes.Structure):
 
 class _Options(ctypes.Structure):
     _fields_ = [("fps", ctypes.c_double), ("sample_count", ctypes.c_int64), ("tolerance", ctypes.c_double)]
-
-
-class _Event(ctypes.Structure):
-    _fields_ = [
-        ("time", ctypes.c_double),
-        ("kind", ctypes.c_int32),
-        ("body", ctypes.c_int32 * 2),
-        ("reserved", ctypes.c_int32),
-        ("point", ctypes.c_double * 2),
-        ("impulse", ctypes.c_double * 2),
-    ]
 
 
 class _Profile(ctypes.Structure):
@@ -96,7 +87,8 @@ def _load() -> ctypes.CDLL:
     core.sim_run.argtypes = [ctypes.c_void_p] * 4
     core.sim_events.argtypes = core.sim_profile.argtypes = [ctypes.c_void_p] * 2
     core.sim_error.argtypes = core.sim_event_count.argtypes = core.sim_destroy.argtypes = [ctypes.c_void_p]
-    sizes = (8 * _BODY_DOUBLES, *(ctypes.sizeof(t) for t in (_Input, _Options, _Event, _Profile)))
+    size = ctypes.sizeof
+    sizes = (8 * _BODY_DOUBLES, size(_Input), size(_Options), _EVENT.size, size(_Profile))
     found = tuple(core.sim_struct_size(k) for k in range(len(sizes)))
     if core.sim_abi() != ABI or found != sizes:
         raise ImportError(f"{path.name} does not belong to this version; install the project again")
@@ -217,17 +209,10 @@ def _run(core: ctypes.CDLL, scene: Scene, samples: int, fps: float, tolerance: f
 
 
 def _events(core: ctypes.CDLL, sim: int, ids: list[str]) -> list[Event]:
-    count = core.sim_event_count(sim)
-    raw = (_Event * count)()
+    raw = ctypes.create_string_buffer(_EVENT.size * core.sim_event_count(sim))
     core.sim_events(sim, raw)
     name: list[str | None] = [*ids, None]  # index -1: none
     return [
-        Event(
-            e.time,
-            _EVENT_KINDS[e.kind],
-            (ids[e.body[0]], name[e.body[1]]),
-            (e.point[0], e.point[1]),
-            (e.impulse[0], e.impulse[1]),
-        )
-        for e in raw
+        Event(time, _EVENT_KINDS[kind], (ids[a], name[b]), (x, y), (jx, jy))
+        for time, kind, a, b, _, x, y, jx, jy in _EVENT.iter_unpack(raw)
     ]

@@ -200,13 +200,14 @@ class Scene(msgspec.Struct, kw_only=True):
         _vector(self.gravity, "gravity")
         seen: dict[str, int] = {}
         for i, body in enumerate(self.bodies):
-            path = f"bodies[{i}]"
             if body.id in seen:
                 raise InputError(
-                    f"{path}.id", f"{body.id!r} is the id of bodies[{seen[body.id]}] too", "ids are unique"
+                    f"bodies[{i}].id",
+                    f"{body.id!r} is the id of bodies[{seen[body.id]}] too",
+                    "ids are unique",
                 )
             seen[body.id] = i
-            _check_body(body, path)
+            _check_body(body, i)
         for i, joint in enumerate(self.joints):
             _check_joint(joint, seen, f"joints[{i}]")
         if self.view is not None:
@@ -263,83 +264,95 @@ def _centre(body: Body) -> None:
 # ---------------------------------------------------------------- checks
 
 
-def _number(value: float, path: str, most: float = LARGEST) -> None:
+# Paths are templates, filled in only for an error: a scene is checked on every run.
+
+
+def _number(value: float, path: str, index: int = 0, most: float = LARGEST) -> None:
+    if -most <= value <= most:
+        return
+    path = _fill(path, index)
     if not math.isfinite(value):
         raise InputError(path, f"{value} is not a finite number")
-    if abs(value) > most:
-        raise InputError(path, f"{value:g} is beyond {most:g}", "units are metres, seconds and kilograms")
+    raise InputError(path, f"{value:g} is beyond {most:g}", "units are metres, seconds and kilograms")
 
 
-def _vector(values: tuple[float, ...], path: str) -> None:
+def _vector(values: tuple[float, ...], path: str, index: int = 0) -> None:
     for k, v in enumerate(values):
-        _number(v, f"{path}[{k}]")
+        if not -LARGEST <= v <= LARGEST:
+            _number(v, f"{_fill(path, index)}[{k}]")
 
 
-def _positive(value: float, path: str, least: float = 0.0, most: float = LARGEST) -> None:
-    _number(value, path, most)
+def _positive(value: float, path: str, index: int = 0, least: float = 0.0, most: float = LARGEST) -> None:
+    _number(value, path, index, most)
     if value <= 0:
-        raise InputError(path, f"{value:g} is not greater than 0")
+        raise InputError(_fill(path, index), f"{value:g} is not greater than 0")
     if value < least:
-        raise InputError(path, f"{value:g} is below {least:g}", "units are metres, seconds and kilograms")
+        raise InputError(
+            _fill(path, index), f"{value:g} is below {least:g}", "units are metres, seconds and kilograms"
+        )
 
 
-def _check_body(body: Body, path: str) -> None:
-    _vector(body.position, f"{path}.position")
-    _vector(body.velocity, f"{path}.velocity")
-    _number(body.angle, f"{path}.angle")
-    _number(body.angular_velocity, f"{path}.angular_velocity")
-    _positive(body.density, f"{path}.density", 1 / MOST_MASS, MOST_MASS)
-    for name, value in (("mass", body.mass), ("moment", body.moment)):
-        if value is not None:
-            try:
-                _positive(value, f"{path}.{name}", 1 / MOST_MASS, MOST_MASS)
-            except InputError as e:
-                e.hint = 'a body that must not move has "anchored": true'
-                raise
-    _number(body.friction, f"{path}.friction")
+def _fill(path: str, index: int) -> str:
+    return path % index if "%" in path else path
+
+
+def _check_body(body: Body, i: int) -> None:
+    _vector(body.position, "bodies[%d].position", i)
+    _vector(body.velocity, "bodies[%d].velocity", i)
+    _number(body.angle, "bodies[%d].angle", i)
+    _number(body.angular_velocity, "bodies[%d].angular_velocity", i)
+    _positive(body.density, "bodies[%d].density", i, 1 / MOST_MASS, MOST_MASS)
+    try:
+        if body.mass is not None:
+            _positive(body.mass, "bodies[%d].mass", i, 1 / MOST_MASS, MOST_MASS)
+        if body.moment is not None:
+            _positive(body.moment, "bodies[%d].moment", i, 1 / MOST_MASS, MOST_MASS)
+    except InputError as e:
+        e.hint = 'a body that must not move has "anchored": true'
+        raise
+    _number(body.friction, "bodies[%d].friction", i)
     if body.friction < 0:
-        raise InputError(f"{path}.friction", f"{body.friction:g} is less than 0")
-    _number(body.elasticity, f"{path}.elasticity")
+        raise InputError(f"bodies[{i}].friction", f"{body.friction:g} is less than 0")
+    _number(body.elasticity, "bodies[%d].elasticity", i)
     if not 0 <= body.elasticity <= 1:
-        raise InputError(f"{path}.elasticity", f"{body.elasticity:g} is not between 0 and 1")
+        raise InputError(f"bodies[{i}].elasticity", f"{body.elasticity:g} is not between 0 and 1")
     if body.color is not None and not _is_color(body.color):
-        raise InputError(f"{path}.color", f"{body.color!r} is not a color", 'write it as "#4477aa"')
-    _check_shape(body.shape, f"{path}.shape")
+        raise InputError(f"bodies[{i}].color", f"{body.color!r} is not a color", 'write it as "#4477aa"')
+    if isinstance(body.shape, Circle):
+        _positive(body.shape.radius, "bodies[%d].shape.radius", i, SMALLEST)
+    elif isinstance(body.shape, Rectangle):
+        _positive(body.shape.size[0], "bodies[%d].shape.size[0]", i, SMALLEST)
+        _positive(body.shape.size[1], "bodies[%d].shape.size[1]", i, SMALLEST)
+    else:
+        _check_vertices(body.shape, f"bodies[{i}].shape.vertices")
 
 
 def _is_color(text: str) -> bool:
     return len(text) == 7 and text[0] == "#" and all(c in "0123456789abcdefABCDEF" for c in text[1:])
 
 
-def _check_shape(shape: Shape, path: str) -> None:
-    if isinstance(shape, Circle):
-        _positive(shape.radius, f"{path}.radius", SMALLEST)
-        return
-    if isinstance(shape, Rectangle):
-        for k in (0, 1):
-            _positive(shape.size[k], f"{path}.size[{k}]", SMALLEST)
-        return
+def _check_vertices(shape: Polygon, path: str) -> None:
     v = shape.vertices
     if len(v) < 3:
-        raise InputError(f"{path}.vertices", f"a polygon has at least 3 vertices, not {len(v)}")
+        raise InputError(path, f"a polygon has at least 3 vertices, not {len(v)}")
     if len(v) > MAX_VERTICES:
-        raise InputError(f"{path}.vertices", f"{len(v)} vertices; at most {MAX_VERTICES} are taken")
+        raise InputError(path, f"{len(v)} vertices; at most {MAX_VERTICES} are taken")
     for k, p in enumerate(v):
-        _vector(p, f"{path}.vertices[{k}]")
+        _vector(p, f"{path}[{k}]")
         if p == v[k - 1]:
-            raise InputError(f"{path}.vertices[{k}]", "the same point as the vertex before it")
+            raise InputError(f"{path}[{k}]", "the same point as the vertex before it")
     crossing = _first_crossing(v)
     if crossing is not None:
         i, j = crossing
         raise InputError(
-            f"{path}.vertices",
+            path,
             f"the side from vertex {i} crosses the side from vertex {j}",
             "the sides of a polygon meet only at its vertices",
         )
     area, _, _ = area_properties(shape)
     reach = max(abs(c) for p in v for c in (p[0] - v[0][0], p[1] - v[0][1]))
     if area <= 1e-12 * reach * reach or reach < SMALLEST:
-        raise InputError(f"{path}.vertices", "the polygon has no area")
+        raise InputError(path, "the polygon has no area")
 
 
 def _first_crossing(v: list[Vector]) -> tuple[int, int] | None:
