@@ -15,6 +15,7 @@ __all__ = ["RING", "SIGHT", "Edge", "End", "Graph", "bend", "build_graph", "head
 Points = NDArray[np.float64]
 RING = (-2, -2)  # the ends of an edge that closes on itself
 SIGHT = 4.0  # pen widths along a branch that show where it is going
+SMOOTH = 0.04  # of the sight: how far an arc may be off a parabola
 OVERSHOOT = 2.5  # pen widths that a line may go on past its corner
 End = tuple[int, int]  # an edge and which of its ends
 
@@ -116,12 +117,11 @@ def heading(points: Points, centre: Points, reach: float, sight: float) -> tuple
 def bend(points: Points, start: Points, sight: float) -> float:
     """The curvature of a branch from `start` on, over twice `sight`, leftwards positive [1/pixel].
 
-    It is 0 where too little of the branch is there to tell.
+    It is 0 where too little of the branch is there to tell, or where it turns a corner.
     """
-    along = np.hypot(*(points - start).T)
-    first = int(np.argmin(along))
-    leaves = np.flatnonzero(along[first:] > 2 * sight)
-    window = points[first : first + (int(leaves[0]) if len(leaves) else len(points))] - start
+    first = int(np.argmin(np.hypot(*(points - start).T)))
+    along = np.cumsum(np.hypot(*np.diff(points[first:], axis=0).T))
+    window = points[first : first + 1 + int(np.searchsorted(along, 2 * sight))] - start
     far = window[-1]
     reach = float(np.hypot(*far))
     if len(window) < 5 or reach < sight:
@@ -130,7 +130,9 @@ def bend(points: Points, start: Points, sight: float) -> float:
     x, y = window @ u, window @ np.array([-u[1], u[0]])
     # y = k x (x - reach) / 2 is the parabola through both ends
     shape = x * (x - reach) / 2
-    return float(shape @ y / (shape @ shape))
+    curvature = float(shape @ y / (shape @ shape))
+    off = y - curvature * shape
+    return curvature if np.sqrt(np.mean(off * off)) < SMOOTH * sight else 0.0
 
 
 def _drop_overshoots(graph: Graph, pen: float) -> None:
