@@ -12,7 +12,7 @@ from cli.arguments import UsageError
 
 __all__ = ["add_to"]
 
-SUBJECTS = ("physics", "recognition", "pipeline")
+SUBJECTS = ("physics", "stress", "recognition", "pipeline")
 ROOT = Path(__file__).resolve().parents[2]  # of the source; an installed package has no benchmarks beside it
 
 
