@@ -51,7 +51,7 @@ CODECS = {
         2,
         "yuv420p",
         "webm",
-        {},
+        {"fflags": "+bitexact"},
     ),
 }
 

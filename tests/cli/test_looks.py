@@ -295,3 +295,14 @@ def test_a_scene_without_bodies_is_drawn(tmp_path: Path) -> None:
     argv = [word for target in targets for word in ("-o", target)]
     assert main(["simulate", str(empty), "--duration", "1", "--size", "64x64", *argv]) == 0
     assert all(Path(target).exists() for target in targets)
+
+
+@pytest.mark.parametrize("kind", ["mp4", "webm", "gif", "png", "html", "svg", "npz"])
+def test_the_same_scene_gives_the_same_file(kind: str, scene_file: Path) -> None:
+    contents = []
+    for k in range(2):
+        out = scene_file.parent / f"run{k}.{kind}"
+        argv = ["simulate", str(scene_file), "-o", str(out), "--duration", "0.5", "--size", "160x120"]
+        assert main(argv) == 0
+        contents.append(out.read_bytes())
+    assert contents[0] == contents[1]
