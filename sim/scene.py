@@ -93,6 +93,8 @@ class Body(msgspec.Struct, kw_only=True):
         An outline of uniform density unless `mass` or `moment` say otherwise; a given mass alone
         scales the moment with it.
         """
+        if self.mass is not None and self.moment is not None:
+            return self.mass, self.moment
         area, _, second = area_properties(self.shape)
         mass = self.density * area if self.mass is None else self.mass
         moment = mass * second / area if self.moment is None else self.moment

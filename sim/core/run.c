@@ -145,7 +145,7 @@ static int advance(Sim *sim, const SimOptions *options, double end) {
             again = time + wait;
         } else if (crowd <= FEW && time >= again) {
             status = exact_take_back(&sim->exact, time);
-            if (crowd_size(&sim->world) < crowd) wait *= 2;
+            wait *= 2;
             again = time + wait;
         } else {
             status = advance_crowd(sim, options, end, &time);
