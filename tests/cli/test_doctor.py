@@ -37,7 +37,7 @@ def test_every_option_is_completed() -> None:
     assert set(words) == {"simulate", "recognize", "batch", "bench", "doctor", "completion"}
     assert {"--duration", "--style", "-o"} <= set(words["simulate"])
     assert words["simulate"]["--style"] == ["clean", "ink", "blueprint"]
-    assert words["bench"][""] == ["physics", "recognition", "pipeline"]
+    assert words["bench"][""] == ["physics", "stress", "recognition", "pipeline"]
 
 
 @pytest.mark.parametrize(
