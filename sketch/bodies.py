@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import Body, Circle, Polygon, Rectangle
-from sketch.kernel import depth
+from sketch.kernel import depth, is_simple
 from sketch.reading import Reading
 
 __all__ = ["Drawn", "draw_body", "touch"]
@@ -44,7 +44,11 @@ class Drawn:
 
 def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float) -> Drawn:
     """The body of a reading: x = px / ppm, y = -py / ppm; its vertices about its centroid."""
-    outline = _thick(reading.outline, pen) if reading.kind == "bar" else np.ascontiguousarray(reading.outline)
+    outline = np.ascontiguousarray(reading.outline)
+    if reading.kind == "bar":
+        outline = _thick(outline, pen)
+        if not is_simple(outline):  # a line that turns within its own thickness
+            outline = _thick(reading.outline[[0, -1]], pen)
     world = outline * (np.array([1.0, -1.0]) / pixels_per_metre)
     angle = 0.0
     shape: Circle | Rectangle | Polygon

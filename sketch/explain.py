@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 __all__ = ["explain"]
 
 _MEANING = {
-    "anchor": "an X: it fixes the body under it",
-    "pivot": "a small circle over bodies: they turn about it",
-    "gravity": "an arrow: gravity pulls along it",
+    "anchor": "an anchor, an X: it fixes the body under it",
+    "pivot": "a pivot, a small circle over bodies: they turn about it",
+    "gravity": "gravity, along an arrow",
     "unread": "without a meaning: left out",
 }
 

@@ -6,7 +6,7 @@ Only what lies close together is proposed; whether it means anything is for the 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from itertools import combinations
 
 import numpy as np
@@ -19,10 +19,11 @@ __all__ = ["arrow_groups", "closing_chains", "crosses"]
 
 MOST_PARTS = 6  # of one outline: people draw a box in one to five strokes
 LOOSE = 0.3  # gaps of a chain, as a share of its ink, overshoots counted as gaps
+CHOICES = 6  # ends that a chain may go on to
 HEADS = 4  # strokes near a shaft's end that are tried as its head
 
 
-def closing_chains(page: Page, complete: set[int]) -> list[Chain]:
+def closing_chains(page: Page, complete: Set[int]) -> list[Chain]:
     """Orders of pieces whose ends meet around, each set of pieces in its tightest order.
 
     complete: pieces that close by themselves and need no others.
@@ -75,13 +76,13 @@ def _near_ends(loose: list[Piece]) -> dict[tuple[int, int], list[tuple[float, in
             p, q = (loose[i // 2].index, i % 2), (loose[j // 2].index, j % 2)
             out.setdefault(p, []).append((gap, *q))
             out.setdefault(q, []).append((gap, *p))
-    return out
+    return {end: sorted(found)[:CHOICES] for end, found in out.items()}
 
 
-def crosses(page: Page) -> Iterator[tuple[int, ...]]:
+def crosses(page: Page, complete: Set[int] = frozenset()) -> Iterator[tuple[int, ...]]:
     """Strokes that may be an X by themselves, and pairs that overlap: of bars, or of a bar and one with hooks."""
     for p in page.pieces:
-        if 1.6 * p.extent < p.length < 5 * p.extent:
+        if 1.6 * p.extent < p.length < 5 * p.extent and p.index not in complete:
             yield (p.index,)
     bars = [p for p in page.pieces if p.length < 3 * p.extent]
     bars.sort(key=lambda p: p.box[0])
@@ -99,10 +100,14 @@ def _is_bar(p: Piece) -> bool:
     return p.length < 1.6 * p.extent and p.straight < 0.12
 
 
-def arrow_groups(page: Page) -> Iterator[tuple[tuple[int, ...], Point, Point]]:
+def arrow_groups(
+    page: Page, complete: Set[int] = frozenset()
+) -> Iterator[tuple[tuple[int, ...], Point, Point]]:
     """Pieces that may make an arrow, with the shaft's tail and a point toward its tip."""
     boxes = np.array([p.box for p in page.pieces])
     for p in page.pieces:
+        if p.index in complete:
+            continue
         if p.length > 1.3 * p.extent:
             for k in (3, 4, 5):
                 v = p.vertices[k]

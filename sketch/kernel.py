@@ -18,6 +18,7 @@ __all__ = [
     "depth",
     "fit_arrow",
     "fit_closed",
+    "is_simple",
     "measure",
     "off_outline",
 ]
@@ -28,12 +29,13 @@ SAMPLES, SIDES, BENDS = 48, 12, 6  # as in core/fit.h and core/strokes.c
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _double, _double, _double, *[_pointer] * 7)(
+_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 7)(
     ("ink_closed", _lib)
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
 _arrow = ctypes.CFUNCTYPE(_int, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_arrow", _lib))
 _off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
+_is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 
 
@@ -119,7 +121,8 @@ def measure(strokes: list[Array]) -> Strokes:
     return out
 
 
-def fit_closed(parts: list[Array], least_axis: float, cap: float, observations: float) -> ClosedFit:
+def fit_closed(parts: list[Array], least_axis: float, cap: float, observations: float, side: float, hopeless: float
+) -> ClosedFit:
     """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
     ends = np.cumsum([len(p) for p in parts], dtype=np.int32)
@@ -132,6 +135,8 @@ def fit_closed(parts: list[Array], least_axis: float, cap: float, observations: 
         least_axis,
         cap,
         observations,
+        side,
+        hopeless,
         *[at + 8 * o for o in _OFFSETS],
     )
     _, length, conic, residual, cost, corners, rest = _OFFSETS
@@ -179,6 +184,11 @@ def fit_arrow(
 def off_outline(strokes: Strokes, index: int, outline: Array) -> float:
     """Mean squared distance of a stroke from a closed outline, (n, 2) [pixels]."""
     return float(_off_outline(strokes.samples.ctypes.data, index, outline.ctypes.data, len(outline)))
+
+
+def is_simple(outline: Array) -> bool:
+    """Whether no two sides of a closed outline, (n, 2), cross or touch."""
+    return bool(_is_simple(outline.ctypes.data, len(outline)))
 
 
 def depth(x: float, y: float, outline: Array) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from sketch.kernel import fit_arrow, off_outline
 from sketch.outlines import RETRACE
 from sketch.pieces import Array, Page, Piece, Point
-from sketch.scoring import FREE, PARAMETER, Fitted, misfit_of, unread
+from sketch.scoring import FREE, PARAMETER, Fitted, misfit_of
 
 __all__ = ["read_arrow", "read_bar", "read_cross", "with_strays"]
 
@@ -132,23 +132,24 @@ def _within(page: Page, piece: Piece, head: Array) -> bool:
     return True
 
 
-def with_strays(page: Page, mark: Fitted) -> list[Fitted]:
-    """A cross or an arrow together with smaller ink along it: a side that joins its bars, a barb drawn twice."""
-    if mark.figure is None:
+def with_strays(page: Page, mark: Fitted, free: list[float]) -> list[Fitted]:
+    """A cross or an arrow together with smaller ink along it: a side that joins its bars, a barb drawn twice.
+
+    free: nats to say each piece freely.
+    """
+    if mark.figure is None or mark.cost > sum(free[i] for i in mark.pieces):
         return []
-    low, high = mark.figure.min(axis=0), mark.figure.max(axis=0)
-    reach = STRAY * math.dist(low, high)
-    (x0, y0), (x1, y1) = (low - reach).tolist(), (high + reach).tolist()
+    reach = STRAY * math.dist(mark.figure.min(axis=0), mark.figure.max(axis=0))
     costs: dict[int, float] = {}
-    for p in page.pieces:
-        if p.index in mark.pieces or p.box[0] < x0 or p.box[1] < y0 or p.box[2] > x1 or p.box[3] > y1:
+    for p in page.within(mark.figure, reach):
+        if p.index in mark.pieces:
             continue
         off = off_outline(page.strokes, p.stroke, mark.figure)
         cost = PARAMETER + RETRACE * p.observations + misfit_of(p, off, p.extent / 2)
         shaft = math.dist(mark.figure[0], mark.figure[1])
         if mark.kind == "arrow" and p.extent < 0.6 * shaft and _within(page, p, mark.figure[[1, 2, 4]]):
             cost = min(cost, PARAMETER + HEAD * p.observations)
-        if cost < unread(p):
+        if cost < free[p.index]:
             costs[p.index] = cost
     sets = [tuple(costs), *((j,) for j in costs)] if len(costs) > 1 else [tuple(costs)] if costs else []
     return [

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sketch.kernel import ClosedFit, fit_closed, off_outline
 from sketch.pieces import Page
-from sketch.scoring import PARAMETER, Fitted, misfit
+from sketch.scoring import PARAMETER, Fitted, misfit, unread
 
 __all__ = ["Chain", "gone_over", "read_outline"]
 
@@ -39,7 +39,7 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
     names = tuple(sorted(i for i, _ in chain))
     count = sum(pieces[i].observations for i in names)
     parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in chain]
-    fit = fit_closed(parts, LEAST_AXIS * page.size, CAP, count)
+    fit = fit_closed(parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(unread(pieces[i]) for i in names))
     gaps = GAP * count * fit.gap / fit.ink
     b = fit.back
     scale = math.sqrt(abs(float(b[0, 0] * b[1, 1] - b[0, 1] * b[1, 0])))
@@ -76,21 +76,27 @@ def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float, scale: float) ->
     a, b, c, d, e = fit.conic.tolist()
     if a * a + b * b > 0.5:  # in this frame whatever is round is nearly a circle
         return [circle]
-    m = np.array([[1 - a, -b], [-b, 1 + a]])
-    centre = np.linalg.solve(m, np.array([c, d]) / 2)
-    level = e + float(centre @ m @ centre)
+    # about its centre (u, v) the conic is zᵀ M z = level, M = [[1 - a, -b], [-b, 1 + a]]
+    det = 1 - a * a - b * b
+    u, v = (c * (1 + a) + d * b) / (2 * det), (c * b + d * (1 - a)) / (2 * det)
+    level = e + (c * u + d * v) / 2
     if not 0.2 < level < 5:
         return [circle]
-    to = np.linalg.inv(fit.back)
-    values, axes = np.linalg.eigh(to.T @ m @ to / level)  # (p - middle)ᵀ shape (p - middle) = 1, in pixels
-    radii = 1 / np.sqrt(values)
-    longer = 0.5 * math.log(values[1] / values[0])
-    middle = fit.mean + fit.back @ centre
+    # half axes: z = sqrt(level) M^-1/2 (unit vector), then to pixels; as a matrix with those columns
+    (p, q), (r2, s) = fit.back.tolist()
+    root = math.sqrt(det)
+    f = math.sqrt(level / (det * (2 + 2 * root)))
+    m00, m01, m11 = f * (1 + a + root), f * b, f * (1 - a + root)  # square root of M's inverse (Cayley-Hamilton)
+    axes = np.array([[p * m00 + q * m01, p * m01 + q * m11], [r2 * m00 + s * m01, r2 * m01 + s * m11]])
+    (k, l), (m, n) = axes.tolist()
+    total, area = k * k + l * l + m * m + n * n, abs(k * n - l * m)
+    longer = math.acosh(max(total / (2 * area), 1.0))  # log of the axes' ratio: cosh of it is their mean ratio
+    middle = fit.mean + fit.back @ np.array([u, v])
     cost = fit.ellipse_cost + ROUND + gaps
     if cost + 0.5 * (longer / UNROUND) ** 2 < circle.cost:
-        ring = middle + math.sqrt(radii[0] * radii[1]) * _RING
+        ring = middle + math.sqrt(area) * _RING
         circle = Fitted("circle", names, cost + 0.5 * (longer / UNROUND) ** 2, ring, scale)
-    return [circle, Fitted("ellipse", names, cost + ELLIPSE, middle + (_RING * radii) @ axes.T, scale)]
+    return [circle, Fitted("ellipse", names, cost + ELLIPSE, middle + _RING @ axes.T, scale)]
 
 
 def _rectangle(fit: ClosedFit) -> tuple[Array, float] | None:

@@ -73,11 +73,20 @@ class Page:
         pieces: those that have a length.
         strokes: their measures as arrays, for the fits; a piece's row is its stroke.
         size: diagonal of the ink's bounding box [pixels].
+        boxes: of the pieces, (pieces, 4).
     """
 
     pieces: list[Piece]
     strokes: Strokes
     size: float
+    boxes: Array
+
+    def within(self, outline: Array, reach: float) -> list[Piece]:
+        """The pieces that lie in an outline's bounding box, widened by `reach` [pixels]."""
+        low, high = outline.min(axis=0) - reach, outline.max(axis=0) + reach
+        b = self.boxes
+        inside = (b[:, 0] >= low[0]) & (b[:, 1] >= low[1]) & (b[:, 2] <= high[0]) & (b[:, 3] <= high[1])
+        return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
 
 
 def page_of(sketch: Sketch) -> Page:
@@ -91,10 +100,10 @@ def page_of(sketch: Sketch) -> Page:
         points = strokes.points[ends[s - 1] if s else 0 : ends[s]]
         pieces.append(_piece(len(pieces), s, points, m, residuals[s], vertices[s]))
     if not pieces:
-        return Page([], strokes, 0.0)
+        return Page([], strokes, 0.0, np.empty((0, 4)))
     boxes = np.array([p.box for p in pieces])
     width, height = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
-    return Page(pieces, strokes, math.hypot(width, height))
+    return Page(pieces, strokes, math.hypot(width, height), boxes)
 
 
 def _piece(

@@ -20,6 +20,7 @@ from sketch.explain import explain
 from sketch.grouping import arrow_groups, closing_chains, crosses
 from sketch.ink import Sketch
 from sketch.interpret import interpret
+from sketch.kernel import depth
 from sketch.marks import read_arrow, read_bar, read_cross, with_strays
 from sketch.outlines import gone_over, read_outline
 from sketch.overrides import Overrides, forced_reading, normal_overrides
@@ -30,7 +31,8 @@ from sketch.search import best_packing
 
 __all__ = ["Reading", "Recognition", "recognize"]
 
-SAME_PLACE = 60.0  # nats that an outline around another's place is the same body gone over, not a second one
+PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
+SAME_PLACE = 0.2  # of a body's size: outlines nowhere further apart are one body, gone over
 KINDS = {"ellipse": "polygon", "cross": "anchor", "arrow": "gravity"}
 
 
@@ -75,7 +77,8 @@ def recognize(
         candidates, gains = _with_forced(page, candidates, gains, forced)
     likely = _best(candidates, gains)
     gains = with_context(candidates, gains, likely, page.size)
-    readings = _readings(page, candidates, gains, _best(candidates, gains))
+    chosen = _one_a_place(candidates, gains, _best(candidates, gains))
+    readings = _readings(page, candidates, gains, chosen)
     read = {s for r in readings for s in r.strokes}
     for i, stroke in enumerate(sketch.strokes):
         if i not in read:
@@ -107,7 +110,8 @@ def _with_forced(
 def read_groups(page: Page) -> list[Fitted]:
     """Every reading of every group of pieces that lie together."""
     out: list[Fitted] = []
-    complete, single = set(), {}
+    complete, plain = set(), set()  # pieces that close by themselves; and those that look like nothing else
+    single = {}
     for p in page.pieces:
         if p.gap < 0.2 * p.length:
             single[p.index] = read_outline(page, [(p.index, False)])
@@ -115,6 +119,8 @@ def read_groups(page: Page) -> list[Fitted]:
             loop = p.gap < 0.12 * p.length and p.scale > 0.2 * p.extent
             if best.gap < 0.1 and (loop or best.cost < 0.6 * unread(p)):
                 complete.add(p.index)
+                if best.cost < PLAIN * unread(p):
+                    plain.add(p.index)
     outlines = []
     for chain in closing_chains(page, complete):
         alone = single.get(chain[0][0]) if len(chain) == 1 else None
@@ -124,13 +130,14 @@ def read_groups(page: Page) -> list[Fitted]:
         out += _gone_over(page, found)
     for p in page.pieces:
         out += _kept(read_bar(p))
-    for names in crosses(page):
+    free = [unread(p) for p in page.pieces]
+    for names in crosses(page, plain):
         for cross in _kept(read_cross(page, names)):
-            out += [cross, *with_strays(page, cross)]
+            out += [cross, *with_strays(page, cross, free)]
     arrows: dict[tuple[int, ...], Fitted] = {}
-    for names, tail, toward in arrow_groups(page):
+    for names, tail, toward in arrow_groups(page, plain):
         arrow = read_arrow(page, names, tail, toward)
-        for mark in [arrow, *with_strays(page, arrow)] if arrow else []:
+        for mark in [arrow, *with_strays(page, arrow, free)] if arrow else []:
             if mark.pieces not in arrows or mark.cost < arrows[mark.pieces].cost:
                 arrows[mark.pieces] = mark
     out += arrows.values()
@@ -144,16 +151,11 @@ def _kept(found: Fitted | None) -> list[Fitted]:
 def _gone_over(page: Page, found: list[Fitted]) -> list[Fitted]:
     """The readings of an outline together with the other pieces that run along it, as drawn once more."""
     best = min(found, key=lambda f: f.cost)
-    reach = 0.3 * best.scale
-    (x0, y0), (x1, y1) = (
-        (best.outline.min(axis=0) - reach).tolist(),
-        (best.outline.max(axis=0) + reach).tolist(),
-    )
     costs: dict[int, float] = {}
-    for p in page.pieces:
-        if p.box[0] < x0 or p.box[1] < y0 or p.box[2] > x1 or p.box[3] > y1 or p.index in best.pieces:
+    for p in page.within(best.outline, 0.3 * best.scale):
+        if p.index in best.pieces:
             continue
-        cost = gone_over(page, best, p.index) - (SAME_PLACE if p.gap < 0.2 * p.length else 0.0)
+        cost = gone_over(page, best, p.index)
         if cost < unread(p):
             costs[p.index] = cost
     sets = [tuple(costs)] if costs else []
@@ -174,6 +176,38 @@ def _best(candidates: list[Fitted], gains: list[float]) -> list[int]:
     live = [k for k, gain in enumerate(gains) if gain > 0]
     chosen = best_packing([frozenset(candidates[k].pieces) for k in live], [gains[k] for k in live])
     return [live[k] for k in chosen]
+
+
+def _one_a_place(candidates: list[Fitted], gains: list[float], chosen: list[int]) -> list[int]:
+    """The chosen, with bodies that were drawn over one another in full joined to the best of them.
+
+    No two bodies have one place; that is known of the pair, and so after the search, which scores each by itself.
+    """
+    out: list[int] = []
+    for k in sorted(chosen, key=lambda k: -gains[k]):
+        c = candidates[k]
+        twin = next((j for j in out if _same_place(c, candidates[j])), None)
+        if twin is None:
+            out.append(k)
+            continue
+        kept = candidates[twin]
+        both = replace(kept, pieces=tuple(sorted((*kept.pieces, *c.pieces))))
+        candidates.append(both)
+        gains.append(gains[twin] + gains[k])
+        out[out.index(twin)] = len(candidates) - 1
+    return out
+
+
+def _same_place(a: Fitted, b: Fitted) -> bool:
+    if not (a.closed and b.closed) or abs(a.scale - b.scale) > SAME_PLACE * max(a.scale, b.scale):
+        return False
+    if math.dist(a.outline.mean(axis=0), b.outline.mean(axis=0)) > SAME_PLACE * a.scale:
+        return False
+    return all(
+        abs(depth(x, y, other.outline)) < SAME_PLACE * a.scale
+        for one, other in ((a, b), (b, a))
+        for x, y in one.outline.tolist()
+    )
 
 
 def _readings(page: Page, candidates: list[Fitted], gains: list[float], chosen: list[int]) -> list[Reading]:

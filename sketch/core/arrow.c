@@ -70,31 +70,3 @@ INK_API int32_t ink_arrow(const double *samples, const int32_t *names, int32_t c
     }
     return 1;
 }
-
-/* Mean squared distance of stroke `name` from a closed outline, (n, 2) [pixels]. */
-INK_API double ink_off_outline(const double *samples, int32_t name, const double *outline, int32_t n)
-{
-    double sum = 0;
-    for (int i = 0; i < SAMPLES; i++) {
-        const double *p = samples + 2 * (SAMPLES * name + i);
-        double best = INFINITY;
-        for (int q = 0; q < n; q++)
-            best = fmin(best, segment_distance2(p[0], p[1], outline + 2 * q, outline + 2 * ((q + 1) % n)));
-        sum += best;
-    }
-    return sum / SAMPLES;
-}
-
-/* Distance of a point from a closed outline [pixels], negative inside (even-odd rule). */
-INK_API double ink_depth(double x, double y, const double *outline, int32_t n)
-{
-    double best = INFINITY;
-    int within = 0;
-    for (int q = 0; q < n; q++) {
-        const double *a = outline + 2 * q, *b = outline + 2 * ((q + 1) % n);
-        best = fmin(best, segment_distance2(x, y, a, b));
-        if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]))
-            within = !within;
-    }
-    return within ? -sqrt(best) : sqrt(best);
-}

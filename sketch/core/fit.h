@@ -31,8 +31,6 @@ typedef struct {
     double bow;          /* how far the run's middle stands off its ends, to the left of the direction */
     double cost;         /* squared distances from the bowed line, and the price of the bow */
     double spread2;      /* squared distances from the straight line */
-    double length2;      /* squared length of the run along the line */
-    double bowed, stretch; /* the bow's part of the squares, before its price: see runs_line */
 } Line;
 
 /* Fill the sums, and the costs for each of `ways` stiffnesses, (tremor / usual bow)²: what a bow costs. */
@@ -41,14 +39,25 @@ void runs_prepare(Runs *r, int ways, const double *stiffness);
 /* The line of samples first .. first+count-1. Nobody draws a straight side straight: it may bow, at a price. */
 Line runs_line(const Runs *r, int first, int count, double stiffness);
 
-/* Best splits of samples start .. start+n-1 into 1 .. SIDES runs: cut[k] holds the k+1 bounds of the best k. */
-void runs_split(const Runs *r, int way, int start, int kmax, double total[SIDES + 1], int cut[SIDES + 1][SIDES + 1]);
+/* The best splits of the samples, begun at one of them, into 1, 2, 3 .. runs: each from the one before. */
+typedef struct {
+    int n;
+    double run[SAMPLES + 1][SAMPLES + 1];  /* run[j][i]: cost of samples i .. j-1, counted from the beginning */
+    double best[SIDES + 1][SAMPLES + 1];   /* best[k][j]: cost of the best k runs of samples 0 .. j-1 */
+    int16_t from[SIDES + 1][SAMPLES + 1];  /* where the last of them begins */
+} Split;
+
+void split_begin(Split *s, const Runs *r, int way, int start);
+void split_further(Split *s, int k);                           /* from k - 1 runs to k */
+void split_bounds(const Split *s, int k, int cut[SIDES + 1]);  /* the k + 1 bounds of the best k runs */
 
 /* Where two neighbouring sides meet, given the last sample of one and the first of the next. */
 void corner(const Line *a, const Line *b, const double end[2], const double begin[2], double out[2]);
 
 /* Equal steps of arc length along the inked parts of a chain (not along the gaps between the parts). */
 double sample_parts(const double *xy, const int32_t *part_end, int parts, double *x, double *y, int n);
+
+INK_API int32_t ink_is_simple(const double *v, int32_t n);
 
 double segment_distance2(double px, double py, const double a[2], const double b[2]);
 

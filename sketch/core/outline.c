@@ -262,46 +262,42 @@ static void fit_rounds(const Runs *r, const Frame *f, const double *factor, doub
     out[8] = scale * sqrt(fmax(conic[4] + conic[2] * conic[2] / 4 + conic[3] * conic[3] / 4, 0));
 }
 
-static double turn(const double *a, const double *b, const double *c)
-{
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-/* Whether no two sides of a polygon cross. */
-static int is_simple(const double *v, int n)
-{
-    for (int i = 0; i < n; i++)
-        for (int j = i + 2; j < n; j++) {
-            if (i == 0 && j == n - 1)
-                continue;
-            const double *a = v + 2 * i, *b = v + 2 * (i + 1), *c = v + 2 * j, *d = v + 2 * ((j + 1) % n);
-            if (turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0)
-                return 0;
-        }
-    return 1;
-}
-
 /* The best polygons of 3 .. SIDES sides over two beginnings, where they cost less than those that are there. */
 static void best_polygons(const Runs *r, const double *factor, int way, double stiffness, const double stretch[2],
-                          double cap2, double ink, double observations, double *residual, double *cost, double *vertices)
+                          double cap2, double ink, double observations, double side, double hopeless, double *residual,
+                          double *cost,
+                          double *vertices)
 {
-    double total[SIDES + 1], polygon[2 * SIDES], odd, around;
-    int cut[SIDES + 1][SIDES + 1], start = 0;
+    double polygon[2 * SIDES], odd, around;
+    int cut[SIDES + 1], start = 0;
+    Split split;
     /* A k-gon's runs must begin at a corner. The pen's start may be none: first cut the chain anywhere, then begin again
      * from a corner found that way. */
     for (int round = 0; round < 2; round++) {
-        runs_split(r, way, start, SIDES, total, cut);
+        double least = INFINITY;
+        int next = start;
+        split_begin(&split, r, way, start);
+        split_further(&split, 2);
         for (int k = 3; k <= SIDES; k++) {
-            double s = fit_polygon(r, factor, start, cut[k], k, stiffness, stretch, cap2, polygon, &odd, &around);
+            split_further(&split, k);
+            split_bounds(&split, k, cut);
+            double s = fit_polygon(r, factor, start, cut, k, stiffness, stretch, cap2, polygon, &odd, &around);
             double c = misfit(s, observations) + odd + retraced(ink, around, observations);
-            if (c < cost[k] && is_simple(polygon, k)) {
+            least = fmin(least, c + k * side);
+            if (c < cost[k] && ink_is_simple(polygon, k)) {
                 cost[k] = c;
                 residual[k] = s;
                 for (int q = 0; q < 2 * k; q++)
                     vertices[2 * SIDES * k + q] = polygon[q] / stretch[q % 2];
             }
+            if (k == 5)
+                next = (start + cut[2]) % SAMPLES;
+            if (k >= 5 && (k + 1) * side > least) /* more sides cost more than they could save */
+                break;
         }
-        start = (start + cut[5][2]) % SAMPLES;
+        if (least > hopeless)
+            return;
+        start = next;
     }
 }
 
@@ -310,10 +306,13 @@ static void best_polygons(const Runs *r, const double *factor, int way, double s
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
  * least_axis: the frame's radii are at least this long [pixels]: below, the pen's own width is what one sees.
  * observations: how many independent ones the ink is worth.
+ * side: nats to say one more side.
+ * hopeless: a first split that costs more [nats] is not looked into further.
  * cap: distances count up to this, in the frame.
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds; residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed
  * sides, flat corners and short sides; vertices[k][SIDES][2] in the frame. */
-INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap, double observations,
+INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap, double observations, double side,
+                        double hopeless,
                         double *frame, double *length, double *round, double *residual, double *cost, double *vertices,
                         double *scratch)
 {
@@ -344,7 +343,8 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     double stretch[2] = {1, 1};
     runs_prepare(&r, 2, STIFFNESS);
     for (int way = 0; way < 2; way++)
-        best_polygons(&r, factor, way, STIFFNESS[way], stretch, cap2, length[0], observations, residual, cost, vertices);
+        best_polygons(&r, factor, way, STIFFNESS[way], stretch, cap2, length[0], observations, side, hopeless, residual, cost,
+                      vertices);
     /* The ends of a long box may be as loose along it as its sides are across, as if it had been drawn square and
      * stretched, or less so: both are tried, as nobody says how a hand errs. */
     double p = hypot(f.back[0], f.back[2]), q = hypot(f.back[1], f.back[3]);
@@ -356,6 +356,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
             r.y[i] *= stretch[1];
         }
         runs_prepare(&r, 1, STIFFNESS);
-        best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, residual, cost, vertices);
+        best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, side, hopeless, residual, cost,
+                      vertices);
     }
 }

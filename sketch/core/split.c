@@ -41,6 +41,13 @@ double sample_parts(const double *xy, const int32_t *part_end, int parts, double
     return total;
 }
 
+/* The sum of q(t)² over m samples, q(t) = t² - mean(t²), t evenly from -1 to 1. */
+static double bow_squares(int m)
+{
+    double g = m - 1, fourth = m * (m + 1.0) * (3.0 * m * m - 7) / (15 * g * g * g), mean = (m + 1) / (3 * g);
+    return fourth - m * mean * mean;
+}
+
 void runs_prepare(Runs *r, int ways, const double *stiffness)
 {
     int n = r->n;
@@ -60,14 +67,31 @@ void runs_prepare(Runs *r, int ways, const double *stiffness)
         r->siix[i + 1] = r->siix[i] + (double)i * i * x;
         r->siiy[i + 1] = r->siiy[i] + (double)i * i * y;
     }
+    double mean2[SAMPLES + 1], squares[SAMPLES + 1], inverse[SAMPLES + 1];
+    for (int m = 1; m <= n; m++) {
+        inverse[m] = 1.0 / m;
+        mean2[m] = m > 1 ? (m + 1) / (3.0 * (m - 1)) : 0;
+        squares[m] = m > 3 ? bow_squares(m) : INFINITY; /* fewer samples do not show a bow */
+    }
     for (int i = 0; i < n; i++) {
         for (int w = 0; w < ways; w++)
             r->cost[w][i][0] = r->cost[w][i][1] = 0;
         for (int m = 2; m <= n; m++) {
-            Line line = runs_line(r, i, m, stiffness[0]);
-            r->cost[0][i][m] = line.cost;
-            for (int w = 1; w < ways; w++)
-                r->cost[w][i][m] = fmax(line.spread2 - line.bowed / (line.stretch + stiffness[w] / line.length2), 0);
+            int e = i + m;
+            double ax = r->sx[e] - r->sx[i], ay = r->sy[e] - r->sy[i];
+            double xx = r->sxx[e] - r->sxx[i] - ax * ax * inverse[m];
+            double xy = r->sxy[e] - r->sxy[i] - ax * ay * inverse[m];
+            double yy = r->syy[e] - r->syy[i] - ay * ay * inverse[m];
+            double half = 0.5 * (xx - yy), mid = 0.5 * (xx + yy), spread = sqrt(half * half + xy * xy);
+            double least = fmax(mid - spread, 0), most = mid + spread, c = 0.5 * (i + e - 1), k = 2.0 / (m - 1);
+            double qx = (r->siix[e] - r->siix[i] - 2 * c * (r->six[e] - r->six[i]) + c * c * ax) * k * k - mean2[m] * ax;
+            double qy = (r->siiy[e] - r->siiy[i] - 2 * c * (r->siy[e] - r->siy[i]) + c * c * ay) * k * k - mean2[m] * ay;
+            /* the bow's sum along the normal, squared: the normal's projector is (most - S) / (most - least) */
+            double along = most * (qx * qx + qy * qy) - (xx * qx * qx + 2 * xy * qx * qy + yy * qy * qy);
+            double bowed = spread > 0 ? along / (2 * spread) : 0;
+            double per_length = m / fmax(12 * most, 1e-12);
+            for (int w = 0; w < ways; w++)
+                r->cost[w][i][m] = fmax(least - bowed / (squares[m] + stiffness[w] * per_length), 0);
         }
     }
 }
@@ -102,7 +126,7 @@ Line runs_line(const Runs *r, int first, int count, double stiffness)
     }
     least = least > 0 ? least : 0;
     double length2 = fmax(12 * most * w, 1e-12);
-    Line line = {mx, my, dx, dy, 0, least, least, length2, 0, 1};
+    Line line = {mx, my, dx, dy, 0, least, least};
     if (count < 4)
         return line;
     double c = 0.5 * (first + z), k = 0.5 * (z - first); /* t = (i - c) / k */
@@ -110,10 +134,7 @@ Line runs_line(const Runs *r, int first, int count, double stiffness)
     double qx = (r->siix[e] - r->siix[first] - 2 * c * (r->six[e] - r->six[first]) + c * c * ax) / (k * k) - mean2 * ax;
     double qy = (r->siiy[e] - r->siiy[first] - 2 * c * (r->siy[e] - r->siy[first]) + c * c * ay) / (k * k) - mean2 * ay;
     double hq = dx * qy - dy * qx;
-    double g = count - 1, fourth = count * (count + 1.0) * (3.0 * count * count - 7) / (15 * g * g * g); /* sum of t⁴ */
-    double qq = fourth - count * mean2 * mean2;
-    line.bowed = hq * hq;
-    line.stretch = qq;
+    double qq = bow_squares(count);
     line.bow = hq / (qq + stiffness / length2);
     line.cost -= hq * line.bow;
     if (line.cost < 0)
@@ -121,43 +142,44 @@ Line runs_line(const Runs *r, int first, int count, double stiffness)
     return line;
 }
 
-void runs_split(const Runs *r, int way, int start, int kmax, double total[SIDES + 1], int cut[SIDES + 1][SIDES + 1])
+void split_begin(Split *s, const Runs *r, int way, int start)
 {
-    int n = r->n;
-    double best[SIDES + 1][SAMPLES + 1], run[SAMPLES + 1][SAMPLES + 1]; /* run[j][i]: cost of samples i .. j-1 */
-    int16_t from[SIDES + 1][SAMPLES + 1];
+    int n = s->n = r->n;
     for (int i = 0; i < n; i++) {
         const double *row = r->cost[way][start + i < n ? start + i : start + i - n];
         for (int j = i; j <= n; j++)
-            run[j][i] = row[j - i];
+            s->run[j][i] = row[j - i];
     }
     for (int j = 0; j <= n; j++) {
-        best[1][j] = j ? run[j][0] : 0;
-        from[1][j] = 0;
+        s->best[1][j] = j ? s->run[j][0] : 0;
+        s->from[1][j] = 0;
     }
-    for (int k = 2; k <= kmax; k++) {
-        int least = 2 * (k - 1); /* a run has two samples or more */
-        for (int j = 0; j <= n; j++) {
-            double low = INFINITY;
-            int at = 0;
-            for (int i = least; i <= j - 2; i++) {
-                double c = best[k - 1][i] + run[j][i];
-                if (c < low) {
-                    low = c;
-                    at = i;
-                }
+}
+
+void split_further(Split *s, int k)
+{
+    const double *before = s->best[k - 1];
+    for (int j = 0; j <= s->n; j++) {
+        double low = INFINITY;
+        int at = 0;
+        for (int i = 2 * (k - 1); i <= j - 2; i++) { /* a run has two samples or more */
+            double c = before[i] + s->run[j][i];
+            if (c < low) {
+                low = c;
+                at = i;
             }
-            best[k][j] = low;
-            from[k][j] = (int16_t)at;
         }
+        s->best[k][j] = low;
+        s->from[k][j] = (int16_t)at;
     }
-    for (int k = 1; k <= kmax; k++) {
-        total[k] = best[k][n];
-        cut[k][k] = n;
-        for (int q = k, j = n; q > 0; q--) {
-            j = from[q][j];
-            cut[k][q - 1] = j;
-        }
+}
+
+void split_bounds(const Split *s, int k, int cut[SIDES + 1])
+{
+    cut[k] = s->n;
+    for (int q = k, j = s->n; q > 0; q--) {
+        j = s->from[q][j];
+        cut[q - 1] = j;
     }
 }
 

@@ -66,22 +66,26 @@ static double least_spread(const double s[3])
 
 static void polylines(const double *p, int n, Runs *r, double *residual, double *vertices)
 {
-    double total[SIDES + 1], x0 = p[0], y0 = p[1];
-    int cut[SIDES + 1][SIDES + 1];
+    double x0 = p[0], y0 = p[1];
+    int cut[SIDES + 1];
+    Split split;
     for (int i = 0; i < r->n; i++) { /* sums of squares keep their digits near the origin */
         r->x[i] -= x0;
         r->y[i] -= y0;
     }
     runs_prepare(r, 1, (double[]){1e9}); /* straight */
-    runs_split(r, 0, 0, BENDS, total, cut);
+    split_begin(&split, r, 0, 0);
     residual[0] = INFINITY;
     for (int k = 1; k <= BENDS; k++) {
+        if (k > 1)
+            split_further(&split, k);
+        split_bounds(&split, k, cut);
         Line side[BENDS];
         double *v = vertices + 2 * (BENDS + 1) * k, sum = 0;
         for (int q = 0; q < k; q++)
-            side[q] = runs_line(r, cut[k][q], cut[k][q + 1] - cut[k][q], 1e9);
+            side[q] = runs_line(r, cut[q], cut[q + 1] - cut[q], 1e9);
         for (int q = 1; q < k; q++) {
-            int b = cut[k][q];
+            int b = cut[q];
             double end[2] = {r->x[b - 1], r->y[b - 1]}, begin[2] = {r->x[b], r->y[b]};
             corner(&side[q - 1], &side[q], end, begin, v + 2 * q);
         }
@@ -93,7 +97,7 @@ static void polylines(const double *p, int n, Runs *r, double *residual, double 
             v[2 * e * k + 1] = a->y + t * a->dy;
         }
         for (int q = 0; q < k; q++)
-            for (int i = cut[k][q]; i < cut[k][q + 1]; i++)
+            for (int i = cut[q]; i < cut[q + 1]; i++)
                 sum += segment_distance2(r->x[i], r->y[i], v + 2 * q, v + 2 * q + 2);
         residual[k] = sum / r->n;
         for (int q = 0; q <= k; q++) {

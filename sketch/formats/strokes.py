@@ -138,7 +138,7 @@ def _columns(raw: dict[str, Any], path: str) -> Stroke:
             column = np.array(msgspec.convert(values, list[float]), dtype=np.float64)
         except (msgspec.ValidationError, OverflowError):
             column = np.full(len(values), np.nan)
-        for i in np.flatnonzero(~(np.abs(column) <= MAX_COORDINATE))[:1]:
+        for i in np.flatnonzero(~(np.abs(column) <= MAX_COORDINATE)).tolist():
             _check(values[i], f"{path}.{name}[{i}]", name)
         columns.append(column)
     if len(columns[0]) != len(columns[1]):

@@ -1,0 +1,108 @@
+"""The C fits: shapes that are known, with seeded noise, and ink without a shape."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pages import box, ngon, page
+
+from sketch.kernel import depth, fit_closed, measure
+from sketch.pieces import page_of
+from sketch.synthetic import HANDS, outline
+
+
+def ring(vertices: list[tuple[float, float]], n: int = 100) -> np.ndarray:
+    v = np.array([*vertices, vertices[0]], dtype=float)
+    along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(v, axis=0).T))])
+    t = np.linspace(0, along[-1], n)
+    return np.stack([np.interp(t, along, v[:, k]) for k in (0, 1)], axis=1)
+
+
+def fit(points: np.ndarray) -> object:
+    return fit_closed([points], 0.5, 0.3, 24.0, 8.0, math.inf)
+
+
+def nearest(found: np.ndarray, wanted: list[tuple[float, float]]) -> float:
+    """The greatest distance from a wanted corner to the nearest found."""
+    return max(float(np.hypot(*(found - w).T).min()) for w in np.array(wanted))
+
+
+@pytest.mark.parametrize("n", [3, 4, 5, 6, 8])
+def test_corners_of_a_polygon(n: int) -> None:
+    v = ngon(n, 300, 200, 100)
+    noise = np.random.default_rng(n).normal(0, 0.5, (100, 2))
+    result = fit(ring(v) + noise)
+    assert nearest(result.vertices(n), v) < 3.5  # between two points a corner is cut
+    assert result.residual[n] < 0.02**2
+    cost = [result.cost[k] + 8 * k for k in range(3, 11)]
+    assert cost.index(min(cost)) + 3 == n
+
+
+def test_a_long_box_keeps_its_short_sides() -> None:
+    v = box(300, 200, 900, 30, 0.4)
+    result = fit(ring(v, 400))
+    assert nearest(result.vertices(4), v) < 6
+
+
+def test_circle_and_ellipse() -> None:
+    t = np.linspace(0, 2 * math.pi, 80)
+    circle = np.stack([300 + 70 * np.cos(t), 200 + 70 * np.sin(t)], axis=1)
+    x, y, r = fit(circle).circle
+    assert (x, y, r) == pytest.approx((300, 200, 70), abs=0.2)
+    # a third missing moves neither centre nor radius much
+    x, y, r = fit(circle[:55]).circle
+    assert (x, y, r) == pytest.approx((300, 200, 70), abs=1.5)
+
+
+def test_a_bowed_side_is_one_side() -> None:
+    t = np.linspace(0, 1, 60)[:, None]
+    bow = np.concatenate([t * [200, 0] + np.sin(math.pi * t) * [0, -14], [[200, 0], [100, 170], [0, 0]]])
+    result = fit(bow)
+    assert result.cost[3] + 24 < result.cost[4] + 32
+
+
+def test_depth_is_negative_inside() -> None:
+    v = np.array([[0, 0], [10, 0], [10, 10], [5, 4], [0, 10]], dtype=float)
+    assert depth(5, 2, v) == pytest.approx(-2)
+    assert depth(5, 8, v) > 0
+    assert depth(-3, 0, v) == pytest.approx(3)
+
+
+def test_hooks_are_cut_and_short_sides_are_not() -> None:
+    hooked = np.array(
+        [[4, 9], [0, 0], *[[k, 0] for k in range(10, 210, 10)], [200, 80], [0, 80], [0, 6]], float
+    )
+    end = np.array([[0, 0], [900, 0], [900, 30], [0, 30], [0, 2]], float)
+    cut, kept = page_of(page([hooked, end])).pieces
+    assert cut.points[0].tolist() == [0, 0]
+    assert len(kept.points) == 5
+
+
+@pytest.mark.parametrize("points", [[], [[1, 1]], [[1, 1], [1, 1]], [[0, 0], [0, 0], [0, 0]]])
+def test_ink_without_length_is_no_piece(points: list[list[float]]) -> None:
+    dot = np.array(points, dtype=float).reshape(-1, 2)
+    line = np.array([[0.0, 0.0], [50.0, 1.0]])
+    strokes = measure([dot, line, dot])
+    assert strokes.measure[:, 0].tolist() == [0, pytest.approx(50.01, abs=0.01), 0]
+    pieces = page_of(page([dot, line, dot])).pieces
+    assert [p.stroke for p in pieces] == [1]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_ink_gives_nan_or_a_crossing_polygon(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    kind = seed % 4
+    points = {
+        0: rng.normal(0, 100, (rng.integers(3, 60), 2)),
+        1: np.repeat(rng.normal(0, 1, (3, 2)), 9, axis=0),
+        2: np.outer(np.linspace(-1, 1, 30), [3.0, 1.0]) + rng.normal(0, 1e-9, (30, 2)),
+        3: np.concatenate(outline(ngon(5, 0, 0, 1e-3), HANDS["shaky"], rng)),
+    }[kind]
+    result = fit(points)
+    for k in range(3, 13):
+        if math.isfinite(result.cost[k]):
+            assert np.isfinite(result.vertices(k)).all()
+    assert not math.isnan(result.circle_cost)
+    assert not math.isnan(result.ellipse_cost)

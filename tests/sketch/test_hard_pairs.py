@@ -1,0 +1,156 @@
+"""Shapes that are easily taken for one another, each drawn by several hands."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pages import box, kinds, ngon, read, turned
+
+from sketch.synthetic import HANDS, arrow, circle, cross, ellipse, line, outline
+
+HAND = [(name, seed) for name in ("neat", "quick", "pieces") for seed in range(3)]
+hands = pytest.mark.parametrize(("name", "seed"), HAND)
+
+
+@pytest.fixture
+def hand(name: str):
+    return HANDS[name]
+
+
+@pytest.fixture
+def rng(name: str, seed: int):
+    return np.random.default_rng([len(name), seed])
+
+
+@hands
+def test_a_long_thin_rectangle_is_no_line(hand, rng) -> None:
+    assert kinds(read(outline(box(400, 300, 420, 50, 0.3), hand, rng))) == ["4-gon"]
+    assert kinds(read(line([(200, 300), (620, 330)], hand, rng))) == ["bar"]
+
+
+@hands
+def test_an_ellipse_is_no_circle(hand, rng) -> None:
+    assert kinds(read(circle((300, 300), 80, hand, rng))) == ["circle"]
+    long = read(ellipse((300, 300), (150, 70), 0.5, hand, rng)).readings[0]
+    assert long.kind == "polygon"
+    assert len(long.outline) > 8
+
+
+@hands
+def test_corners_are_counted(hand, rng) -> None:
+    for n in (3, 5, 6):
+        assert kinds(read(outline(ngon(n, 300, 300, 110), hand, rng))) == [f"{n}-gon"]
+
+
+@hands
+def test_rectangle_trapezoid_parallelogram(hand, rng) -> None:
+    straight = read(outline(box(300, 300, 240, 130, 0.2), hand, rng)).readings[0]
+    trapezoid = read(outline([(0, 0), (260, 0), (190, 130), (70, 130)], hand, rng)).readings[0]
+    parallelogram = read(outline([(0, 0), (220, 0), (310, 130), (90, 130)], hand, rng)).readings[0]
+    assert straight.kind == "rectangle"
+    assert trapezoid.kind == parallelogram.kind == "polygon"
+    assert len(trapezoid.outline) == len(parallelogram.outline) == 4
+
+
+@hands
+def test_concave_outlines(hand, rng) -> None:
+    angle_iron = [(0, 0), (200, 0), (200, 80), (80, 80), (80, 220), (0, 220)]
+    assert kinds(read(outline(turned(angle_iron, 0.4, (300, 300)), hand, rng))) == ["6-gon"]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_rounded_corners_add_no_sides(seed: int) -> None:
+    from dataclasses import replace
+
+    hand = replace(HANDS["neat"], rounding=0.2)
+    rng = np.random.default_rng(seed)
+    assert kinds(read(outline(box(300, 300, 240, 160), hand, rng))) == ["4-gon"]
+
+
+@hands
+def test_three_lines_are_one_arrow_or_three_bars(hand, rng) -> None:
+    assert kinds(read(arrow((200, 150), (210, 310), hand, rng))) == ["gravity"]
+    apart = [line([(x, 150), (x + 8, 310)], hand, rng) for x in (200, 400, 600)]
+    assert kinds(read(*apart)) == ["bar"] * 3
+
+
+@hands
+def test_the_arrow_points_from_tail_to_head(hand, rng) -> None:
+    for angle in np.arange(0, 6.28, 0.7):
+        head = (300 + 120 * math.cos(angle), 300 + 120 * math.sin(angle))
+        x, y = read(arrow((300, 300), head, hand, rng)).scene.gravity
+        assert math.hypot(x, y) == pytest.approx(9.81)
+        assert math.cos(math.atan2(-y, x) - angle) > math.cos(math.radians(10))
+
+
+@hands
+def test_a_circle_is_pivot_ball_or_wheel_by_what_is_under_it(hand, rng) -> None:
+    beam, rod = outline(box(300, 150, 400, 80), hand, rng), outline(box(300, 300, 60, 380), hand, rng)
+    pivot = read(beam, rod, circle((300, 150), 12, hand, rng)).scene
+    assert [j.bodies for j in pivot.joints] == [("b1", "b2")]
+    assert pivot.joints[0].position == pytest.approx((300 / 128, -150 / 128), abs=4 / 128)
+    alone = read(beam, circle((800, 400), 12, hand, rng)).scene
+    assert (len(alone.bodies), alone.joints) == (2, [])
+    nail = read(outline(box(300, 300, 400, 300), hand, rng), circle((300, 300), 12, hand, rng)).scene
+    assert [j.bodies for j in nail.joints] == [("b1", None)]
+    wheel = read(outline(box(300, 300, 300, 120), hand, rng), circle((230, 360), 50, hand, rng)).scene
+    assert (len(wheel.bodies), wheel.joints) == (2, [])
+
+
+@hands
+def test_an_x_anchors_and_crossing_bars_do_not(hand, rng) -> None:
+    ground = outline(box(400, 500, 600, 90), hand, rng)
+    scene = read(ground, cross((300, 500), 44, hand, rng)).scene
+    assert [b.anchored for b in scene.bodies] == [True]
+    rods = read(line([(100, 100), (420, 300)], hand, rng), line([(120, 310), (400, 90)], hand, rng))
+    assert not any(b.anchored for b in rods.scene.bodies)
+
+
+@hands
+def test_an_x_over_two_bodies_anchors_the_last_drawn(hand, rng) -> None:
+    first, last = outline(box(300, 300, 300, 160), hand, rng), outline(box(420, 330, 280, 140), hand, rng)
+    scene = read(first, last, cross((370, 310), 40, hand, rng)).scene
+    assert [b.anchored for b in scene.bodies] == [False, True]
+    assert any("b1 and b2" in note and "b2" in note for note in scene.notes)
+
+
+@hands
+def test_wheels_cross_their_frame(hand, rng) -> None:
+    frame = outline(box(400, 300, 340, 120), hand, rng)
+    wheels = [circle((x, 350), 48, hand, rng) for x in (300, 500)]
+    assert kinds(read(frame, *wheels)) == ["4-gon", "circle", "circle"]
+
+
+def test_one_side_drawn_twice_is_one_side() -> None:
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        body = outline(box(400, 300, 300, 180), HANDS["neat"], rng)
+        again = line([(258, 212), (545, 209)], HANDS["neat"], rng)
+        assert kinds(read(body, again)) == ["4-gon"]
+        twice = outline(ngon(3, 400, 300, 120), HANDS["neat"], rng)
+        assert kinds(read(twice, [s + 2 for s in twice])) == ["3-gon"]
+
+
+def test_a_gap_of_a_tenth_of_the_outline() -> None:
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        whole = np.concatenate(outline(box(400, 300, 300, 200), HANDS["shaky"].__class__(parts=(1,)), rng))
+        open_box = whole[: round(0.9 * len(whole))]
+        assert kinds(read([open_box])) == ["4-gon"]
+        ring = circle((400, 300), 90, HANDS["neat"], rng)[0]
+        assert kinds(read([ring[: round(0.9 * len(ring))]])) == ["circle"]
+
+
+def test_hooks_and_overshoots_do_not_move_a_side() -> None:
+    from dataclasses import replace
+
+    careful = replace(HANDS["neat"], tremor=0.0, drift=0.0, rounding=0.0, parts=(4,))
+    wild = replace(careful, hook=0.04, overshoot=0.05)
+    for seed in range(8):
+        found = read(outline(box(400, 300, 300, 180), wild, np.random.default_rng(seed))).readings[0]
+        low, high = found.outline.min(axis=0), found.outline.max(axis=0)
+        assert len(found.outline) == 4
+        assert low == pytest.approx([250, 210], abs=12)
+        assert high == pytest.approx([550, 390], abs=12)
