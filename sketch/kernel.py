@@ -121,7 +121,8 @@ def measure(strokes: list[Array]) -> Strokes:
     return out
 
 
-def fit_closed(parts: list[Array], least_axis: float, cap: float, observations: float, side: float, hopeless: float
+def fit_closed(
+    parts: list[Array], least_axis: float, cap: float, observations: float, side: float, hopeless: float
 ) -> ClosedFit:
     """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)

@@ -19,9 +19,10 @@ Array = NDArray[np.float64]
 Chain = list[tuple[int, bool]]  # pieces that go once around, each with whether it was drawn the other way
 
 MOST_SIDES = 12
-ROUND = 40.0  # nats that a round outline is rarer than its three parameters say
+ROUND = 39.5  # nats that a round outline is rarer than its three parameters say
 CORNER = 4.0  # nats to say a corner's coordinate, given those before: less than a free parameter
-BOX = 20.0  # nats to say a rectangle: five parameters, and that it is the commonest thing drawn
+USUAL = {3: 2.0, 4: 4.0}  # nats that triangles and quadrilaterals are commoner than other polygons
+BOX = 17.0  # nats to say a rectangle: five parameters, and that it is the commonest thing drawn
 UNROUND = 0.085  # usual log of a drawn circle's length over its width: nobody's circles are round
 ELLIPSE = 11.0  # nats that an ellipse takes beyond a circle: two parameters, and that it is rarer
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.c
@@ -39,14 +40,17 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
     names = tuple(sorted(i for i, _ in chain))
     count = sum(pieces[i].observations for i in names)
     parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in chain]
-    fit = fit_closed(parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(unread(pieces[i]) for i in names))
+    fit = fit_closed(
+        parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(unread(pieces[i]) for i in names)
+    )
     gaps = GAP * count * fit.gap / fit.ink
     b = fit.back
     scale = math.sqrt(abs(float(b[0, 0] * b[1, 1] - b[0, 1] * b[1, 0])))
-    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + 2 * k * CORNER)
+    said = [2 * k * CORNER - USUAL.get(k, 0.0) for k in range(MOST_SIDES + 1)]
+    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + said[k])
     out = _round(fit, names, gaps, scale)
     if math.isfinite(fit.cost[sides]):
-        cost = fit.cost[sides] + 2 * sides * CORNER + gaps
+        cost = fit.cost[sides] + said[sides] + gaps
         out.append(Fitted("polygon", names, cost, fit.vertices(sides), scale))
     box = _rectangle(fit) if math.isfinite(fit.cost[4]) else None
     if box is not None:
@@ -86,11 +90,17 @@ def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float, scale: float) ->
     (p, q), (r2, s) = fit.back.tolist()
     root = math.sqrt(det)
     f = math.sqrt(level / (det * (2 + 2 * root)))
-    m00, m01, m11 = f * (1 + a + root), f * b, f * (1 - a + root)  # square root of M's inverse (Cayley-Hamilton)
+    m00, m01, m11 = (
+        f * (1 + a + root),
+        f * b,
+        f * (1 - a + root),
+    )  # square root of M's inverse (Cayley-Hamilton)
     axes = np.array([[p * m00 + q * m01, p * m01 + q * m11], [r2 * m00 + s * m01, r2 * m01 + s * m11]])
     (k, l), (m, n) = axes.tolist()
     total, area = k * k + l * l + m * m + n * n, abs(k * n - l * m)
-    longer = math.acosh(max(total / (2 * area), 1.0))  # log of the axes' ratio: cosh of it is their mean ratio
+    longer = math.acosh(
+        max(total / (2 * area), 1.0)
+    )  # log of the axes' ratio: cosh of it is their mean ratio
     middle = fit.mean + fit.back @ np.array([u, v])
     cost = fit.ellipse_cost + ROUND + gaps
     if cost + 0.5 * (longer / UNROUND) ** 2 < circle.cost:
