@@ -87,7 +87,7 @@ def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float, scale: float) ->
     if not 0.2 < level < 5:
         return [circle]
     # half axes: z = sqrt(level) M^-1/2 (unit vector), then to pixels; as a matrix with those columns
-    (p, q), (r2, s) = fit.back.tolist()
+    (p, q), (o, s) = fit.back.tolist()
     root = math.sqrt(det)
     f = math.sqrt(level / (det * (2 + 2 * root)))
     m00, m01, m11 = (
@@ -95,12 +95,10 @@ def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float, scale: float) ->
         f * b,
         f * (1 - a + root),
     )  # square root of M's inverse (Cayley-Hamilton)
-    axes = np.array([[p * m00 + q * m01, p * m01 + q * m11], [r2 * m00 + s * m01, r2 * m01 + s * m11]])
-    (k, l), (m, n) = axes.tolist()
-    total, area = k * k + l * l + m * m + n * n, abs(k * n - l * m)
-    longer = math.acosh(
-        max(total / (2 * area), 1.0)
-    )  # log of the axes' ratio: cosh of it is their mean ratio
+    axes = np.array([[p * m00 + q * m01, p * m01 + q * m11], [o * m00 + s * m01, o * m01 + s * m11]])
+    (k, ll), (m, n) = axes.tolist()
+    total, area = k * k + ll * ll + m * m + n * n, abs(k * n - ll * m)
+    longer = math.acosh(max(total / (2 * area), 1.0))  # log of the half axes' ratio
     middle = fit.mean + fit.back @ np.array([u, v])
     cost = fit.ellipse_cost + ROUND + gaps
     if cost + 0.5 * (longer / UNROUND) ** 2 < circle.cost:
