@@ -240,13 +240,14 @@ static void between_polygons(const Outline *a, const Outline *b, double margin, 
         nearer(b, a, true, &nearest);
         if (nearest.end >= 0) {
             bool b_has_side = nearest.flip;
-            corners(a, b_has_side ? nearest.vertex : nearest.end, b, b_has_side ? nearest.end : nearest.vertex, margin, m);
+            corners(a, b_has_side ? nearest.vertex : nearest.end, b, b_has_side ? nearest.end : nearest.vertex, margin,
+                    m);
             return;
         }
         flip = nearest.flip;
         const Outline *sided = flip ? b : a, *cornered = flip ? a : b;
-        bool touches = !is_cut(sided, nearest.side) &&
-                       exposed(cornered, nearest.vertex, vscale(sided->normal[nearest.side], -1));
+        bool touches =
+            !is_cut(sided, nearest.side) && exposed(cornered, nearest.vertex, vscale(sided->normal[nearest.side], -1));
         f = (Facing){sqrt(nearest.square), nearest.side, nearest.vertex, touches};
     }
     clip(flip ? b : a, flip ? a : b, f, flip, margin, m);

@@ -19,13 +19,13 @@ typedef struct Outline {
 } Outline;
 
 typedef struct ManifoldPoint {
-    Vec point;          /* halfway between the two surfaces */
-    double separation;  /* along the normal; negative when they overlap */
+    Vec point; /* halfway between the two surfaces */
+    double separation; /* along the normal; negative when they overlap */
 } ManifoldPoint;
 
 typedef struct Manifold {
-    Vec normal;   /* unit, from a to b */
-    double gap;   /* how far they are apart along the normal: never more than their distance; negative in overlap */
+    Vec normal; /* unit, from a to b */
+    double gap; /* how far they are apart along the normal: never more than their distance; negative in overlap */
     int32_t count;
     ManifoldPoint point[2];
 } Manifold;

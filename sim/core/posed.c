@@ -44,9 +44,12 @@ int posed_create(Posed *posed, const World *world) {
         const Vec *v = world->piece_vertex + piece->first;
         int32_t first = piece->first, count = piece->count;
         bool whole = world->shape[piece->shape].piece_count == 1;
-        posed->outline[i] = (Outline){posed->vertex + first, posed->normal + first,
-                                      whole ? NULL : posed->arriving + first, whole ? NULL : posed->leaving + first,
-                                      count, piece->radius};
+        posed->outline[i] = (Outline){posed->vertex + first,
+                                      posed->normal + first,
+                                      whole ? NULL : posed->arriving + first,
+                                      whole ? NULL : posed->leaving + first,
+                                      count,
+                                      piece->radius};
         for (int32_t k = 0; k < count; k++) {
             posed->swing[i] = larger(posed->swing[i], vlength(v[k]));
             if (count > 1) posed->local_normal[first + k] = side_normal(v[k], v[k + 1 < count ? k + 1 : 0]);

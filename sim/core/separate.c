@@ -62,7 +62,8 @@ static int create(Separation *s, World *world) {
     for (int32_t i = 0; i < world->body_count; i++) {
         const Body *b = &world->body[i];
         if (b->inverse_mass > 0) s->heaviest = fmax(s->heaviest, 1 / sqrt(b->inverse_mass));
-        s->slide[i] = (Slide){.inverse_mass = sqrt(b->inverse_mass), .drawn_position = b->position, .drawn_angle = b->angle};
+        s->slide[i] =
+            (Slide){.inverse_mass = sqrt(b->inverse_mass), .drawn_position = b->position, .drawn_angle = b->angle};
     }
     for (int32_t i = 0; i < world->joint_count; i++)
         for (int32_t side = 0; side < 2; side++) {
@@ -218,8 +219,10 @@ static double solve_row(Row *row, Slide *a, Slide *b) {
 static double solve_joint(const World *world, const Joint *joint, Slide *slide) {
     Slide *a = &slide[joint->a], *b = &slide[joint->b];
     const Body *ba = &world->body[joint->a], *bb = &world->body[joint->b];
-    Vec ra = turn(pose(ba->position, ba->angle), joint->local_a), rb = turn(pose(bb->position, bb->angle), joint->local_b);
-    Vec apart = vadd(joint_gap(world, joint), vsub(vmad(b->moved, b->turned, vperp(rb)), vmad(a->moved, a->turned, vperp(ra))));
+    Vec ra = turn(pose(ba->position, ba->angle), joint->local_a),
+        rb = turn(pose(bb->position, bb->angle), joint->local_b);
+    Vec apart =
+        vadd(joint_gap(world, joint), vsub(vmad(b->moved, b->turned, vperp(rb)), vmad(a->moved, a->turned, vperp(ra))));
     double m = a->inverse_mass + b->inverse_mass, ia = a->inverse_moment, ib = b->inverse_moment;
     double k11 = m + ia * ra.y * ra.y + ib * rb.y * rb.y, k12 = -ia * ra.x * ra.y - ib * rb.x * rb.y;
     double k22 = m + ia * ra.x * ra.x + ib * rb.x * rb.x, det = k11 * k22 - k12 * k12;
@@ -239,7 +242,8 @@ static void wish(Separation *s) {
         slide->turned = slide->drawn_angle - world->body[i].angle;
     }
     bool same = s->row_count == s->last_count;
-    for (int32_t i = 0; i < s->row_count && same; i++) same = s->row[i].a == s->last[i].a && s->row[i].b == s->last[i].b;
+    for (int32_t i = 0; i < s->row_count && same; i++)
+        same = s->row[i].a == s->last[i].a && s->row[i].b == s->last[i].b;
     for (int32_t i = 0; i < s->row_count && same; i++) {
         Row *row = &s->row[i];
         row->push = s->last[i].push;

@@ -9,11 +9,9 @@
  * off[k]: mean squared distance of the k-th stroke from the arrow [pixels²].
  * Returns 0 where the ink has no head: a barb on each side, pointing back. */
 INK_API int32_t ink_arrow(const double *samples, const int32_t *names, int32_t count, const double *tail,
-                          const double *toward, double *head, double *lengths, double *angles, double *off)
-{
+                          const double *toward, double *head, double *lengths, double *angles, double *off) {
     double ux = toward[0] - tail[0], uy = toward[1] - tail[1], l = hypot(ux, uy);
-    if (l <= 0)
-        return 0;
+    if (l <= 0) return 0;
     ux /= l;
     uy /= l;
     double reach = 0, left[2] = {0, 0}, right[2] = {0, 0}; /* along the shaft, and across */
@@ -21,8 +19,7 @@ INK_API int32_t ink_arrow(const double *samples, const int32_t *names, int32_t c
         for (int i = 0; i < SAMPLES; i++) {
             const double *p = samples + 2 * (SAMPLES * names[k] + i);
             double s = (p[0] - tail[0]) * ux + (p[1] - tail[1]) * uy, h = (p[1] - tail[1]) * ux - (p[0] - tail[0]) * uy;
-            if (s > reach)
-                reach = s;
+            if (s > reach) reach = s;
             if (h > left[1]) {
                 left[0] = s;
                 left[1] = h;
@@ -42,8 +39,7 @@ INK_API int32_t ink_arrow(const double *samples, const int32_t *names, int32_t c
                 n++;
             }
         }
-    if (reach <= 0)
-        return 0;
+    if (reach <= 0) return 0;
     double tip[2] = {reach, sum / n}, origin[2] = {0, 0};
     lengths[0] = reach;
     lengths[1] = hypot(tip[0] - left[0], tip[1] - left[1]);
@@ -51,8 +47,7 @@ INK_API int32_t ink_arrow(const double *samples, const int32_t *names, int32_t c
     angles[0] = atan2(left[1] - tip[1], tip[0] - left[0]);
     angles[1] = atan2(tip[1] - right[1], tip[0] - right[0]);
     for (int e = 0; e < 2; e++)
-        if (angles[e] < 0.15 || angles[e] > 1.4 || lengths[e + 1] < 0.1 * reach)
-            return 0;
+        if (angles[e] < 0.15 || angles[e] > 1.4 || lengths[e + 1] < 0.1 * reach) return 0;
     for (int k = 0; k < count; k++) {
         off[k] = 0;
         for (int i = 0; i < SAMPLES; i++) {

@@ -15,8 +15,7 @@ typedef struct {
 } Frame;
 
 /* Second moments of the chain taken as a closed curve (the gaps bridged), so that a missing piece moves them little. */
-static Frame normal_frame(const double *xy, int n, double least_axis)
-{
+static Frame normal_frame(const double *xy, int n, double least_axis) {
     double w = 0, m[2] = {0, 0}, s[3] = {0, 0, 0};
     for (int pass = 0; pass < 2; pass++) { /* the mean first: moments about it keep their digits */
         double a[2] = {0, 0};
@@ -31,8 +30,7 @@ static Frame normal_frame(const double *xy, int n, double least_axis)
             s[1] += l * (cx * cy + dx * dy / 12);
             s[2] += l * (cy * cy + dy * dy / 12);
         }
-        if (w <= 0)
-            w = 1;
+        if (w <= 0) w = 1;
         if (pass == 0) {
             m[0] = a[0] / w;
             m[1] = a[1] / w;
@@ -60,40 +58,36 @@ static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a
 static const double REFLEX = 1.2;  /* likewise one that turns inward */
 static const double FLATNESS = 0.096;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
-static const double WALL = 2.7;     /* unless its two corners turn by more than this [rad] together: it is a wall's end */
+static const double WALL = 2.7; /* unless its two corners turn by more than this [rad] together: it is a wall's end */
 static const double SHORTNESS = 0.0096; /* the spreads say how fast such readings become unlikely */
 
 /* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e, or of its circles alone (a = b = 0): near the unit circle the
  * algebraic distance is the geometric one to first order. Reweighted (Cauchy's weights), so that a pen's hooks and tails do
  * not pull. Returns the mean squared distance (Sampson's, capped). */
-static double fit_round(const double *x, const double *y, const double *factor, double cap2, int circle, double conic[5])
-{
+static double fit_round(const double *x, const double *y, const double *factor, double cap2, int circle,
+                        double conic[5]) {
     double weight[SAMPLES], sum = 0;
     int first = circle ? 2 : 0;
-    for (int i = 0; i < SAMPLES; i++)
-        weight[i] = 1;
+    for (int i = 0; i < SAMPLES; i++) weight[i] = 1;
     for (int pass = 0; pass < 4; pass++) {
         double a[5][6];
         memset(a, 0, sizeof a);
         for (int i = 0; i < SAMPLES; i++) {
             double row[6] = {x[i] * x[i] - y[i] * y[i], 2 * x[i] * y[i], x[i], y[i], 1, x[i] * x[i] + y[i] * y[i]};
             for (int p = first; p < 5; p++)
-                for (int q = p; q < 6; q++)
-                    a[p][q] += weight[i] * row[p] * row[q];
+                for (int q = p; q < 6; q++) a[p][q] += weight[i] * row[p] * row[q];
         }
         conic[0] = conic[1] = 0;
         for (int p = first; p < 5; p++) { /* symmetric and positive definite: elimination without pivots */
             a[p][p] += 1e-9 * SAMPLES;
             for (int q = p + 1; q < 5; q++) {
                 double f = a[p][q] / a[p][p];
-                for (int t = q; t < 6; t++)
-                    a[q][t] -= f * a[p][t];
+                for (int t = q; t < 6; t++) a[q][t] -= f * a[p][t];
             }
         }
         for (int p = 4; p >= first; p--) {
             double v = a[p][5];
-            for (int q = p + 1; q < 5; q++)
-                v -= a[p][q] * conic[q];
+            for (int q = p + 1; q < 5; q++) v -= a[p][q] * conic[q];
             conic[p] = v / a[p][p];
         }
         sum = 0;
@@ -113,14 +107,10 @@ static double fit_round(const double *x, const double *y, const double *factor, 
 /* Corners of the k-gon whose sides are the runs bounded by `cut` (counted from `start`), and its mean squared distance.
  * Ink that overshoots a corner lies on its side's line: it pays for the length beyond at a quarter. */
 static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double stiffness,
-                          const double stretch[2], double cap2,
-                          double *vertices,
-                          double *oddness, double *perimeter)
-{
+                          const double stretch[2], double cap2, double *vertices, double *oddness, double *perimeter) {
     Line side[SIDES], chord[SIDES];
     double drawn[2 * SIDES], turning = 0;
-    for (int i = 0; i < r->n; i++)
-        turning += r->x[i] * r->y[i + 1] - r->y[i] * r->x[i + 1];
+    for (int i = 0; i < r->n; i++) turning += r->x[i] * r->y[i + 1] - r->y[i] * r->x[i + 1];
     double outward = turning > 0 ? 1 : -1; /* to the right of the samples' order, in a frame with y up */
     for (int q = 0; q < k; q++) {
         chord[q] = side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q], stiffness);
@@ -178,8 +168,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
 
 /* A writer's precision goes with the size of what is drawn: being off counts by a part's own size, and where the part closes
  * by itself, by its thickness. A little loop is no careless piece of something large. */
-static void own_scale(const double *z, const int32_t *part_end, int parts, double ink, double factor[SAMPLES])
-{
+static void own_scale(const double *z, const int32_t *part_end, int parts, double ink, double factor[SAMPLES]) {
     double done = 0;
     int k = 0;
     for (int p = 0, i = 0; p < parts; i = part_end[p++]) {
@@ -204,14 +193,12 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
             f = 1 / fmin(fmax(size2, 1e-4), 1);
         }
         done += l;
-        for (; k < SAMPLES && (p + 1 == parts || (k + 0.5) * ink / SAMPLES <= done); k++)
-            factor[k] = f;
+        for (; k < SAMPLES && (p + 1 == parts || (k + 0.5) * ink / SAMPLES <= done); k++) factor[k] = f;
     }
 }
 
 /* Squared distance from point `to` to the ink from point `from` on, in steps of `step`, as far as `reach` goes. */
-static double nearest2(const double *z, int to, int from, int end, int step, double reach)
-{
+static double nearest2(const double *z, int to, int from, int end, int step, double reach) {
     double best = INFINITY, done = 0;
     for (int i = from; i != end && done < reach; i += step) {
         const double *a = z + 2 * i, *b = z + 2 * (i + step);
@@ -223,8 +210,7 @@ static double nearest2(const double *z, int to, int from, int end, int step, dou
 
 /* What is missing of the outline between the end of part p and the beginning of the next: nothing where one runs on along
  * the other, little where they cross at a corner. */
-static double gap_after(const double *z, const int32_t *part_end, int parts, int p)
-{
+static double gap_after(const double *z, const int32_t *part_end, int parts, int p) {
     int begin = p ? part_end[p - 1] : 0, last = part_end[p] - 1;
     int next = p + 1 < parts ? part_end[p] : 0, stop = p + 1 < parts ? part_end[p + 1] : part_end[0];
     double gx = z[2 * next] - z[2 * last], gy = z[2 * next + 1] - z[2 * last + 1], g2 = gx * gx + gy * gy;
@@ -235,21 +221,18 @@ static double gap_after(const double *z, const int32_t *part_end, int parts, int
 
 /* Nats to say the ink's distances from an outline: Student's t for the tremor, unknown but about TREMOR, and a normal prior
  * on how careless people are. n: independent observations, as neighbouring points err together. */
-static double misfit(double mean_square, double n)
-{
+static double misfit(double mean_square, double n) {
     return 0.5 * n * (log1p(mean_square / (TREMOR * TREMOR)) + mean_square / (SLOPPY * SLOPPY));
 }
 
 /* Nats to say that ink runs along the outline more often than once. */
-static double retraced(double ink, double perimeter, double n)
-{
+static double retraced(double ink, double perimeter, double n) {
     return RETRACE * n * fmax(1 - perimeter / fmax(ink, 1e-9), 0);
 }
 
 /* The ellipse, in the frame, and the circle, in pixels: out as conic (5) and cost, centre (2), radius and cost. */
 static void fit_rounds(const Runs *r, const Frame *f, const double *factor, double ink, double n, double cap2,
-                       double out[10])
-{
+                       double out[10]) {
     double x[SAMPLES], y[SAMPLES], conic[5], scale = sqrt(fabs(f->back[0] * f->back[3] - f->back[1] * f->back[2]));
     out[5] = misfit(fit_round(r->x, r->y, factor, cap2, 0, out), n) + retraced(ink, 2 * PI, n);
     for (int i = 0; i < SAMPLES; i++) {
@@ -265,9 +248,7 @@ static void fit_rounds(const Runs *r, const Frame *f, const double *factor, doub
 /* The best polygons of 3 .. SIDES sides over two beginnings, where they cost less than those that are there. */
 static void best_polygons(const Runs *r, const double *factor, int way, double stiffness, const double stretch[2],
                           double cap2, double ink, double observations, double side, double hopeless, double *residual,
-                          double *cost,
-                          double *vertices)
-{
+                          double *cost, double *vertices) {
     double polygon[2 * SIDES], odd, around;
     int cut[SIDES + 1], start = 0;
     Split split;
@@ -287,16 +268,13 @@ static void best_polygons(const Runs *r, const double *factor, int way, double s
             if (c < cost[k] && ink_is_simple(polygon, k)) {
                 cost[k] = c;
                 residual[k] = s;
-                for (int q = 0; q < 2 * k; q++)
-                    vertices[2 * SIDES * k + q] = polygon[q] / stretch[q % 2];
+                for (int q = 0; q < 2 * k; q++) vertices[2 * SIDES * k + q] = polygon[q] / stretch[q % 2];
             }
-            if (k == 5)
-                next = (start + cut[2]) % SAMPLES;
+            if (k == 5) next = (start + cut[2]) % SAMPLES;
             if (k >= 5 && (k + 1) * side > least) /* more sides cost more than they could save */
                 break;
         }
-        if (least > hopeless)
-            return;
+        if (least > hopeless) return;
         start = next;
     }
 }
@@ -311,11 +289,9 @@ static void best_polygons(const Runs *r, const double *factor, int way, double s
  * cap: distances count up to this, in the frame.
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds; residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed
  * sides, flat corners and short sides; vertices[k][SIDES][2] in the frame. */
-INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap, double observations, double side,
-                        double hopeless,
-                        double *frame, double *length, double *round, double *residual, double *cost, double *vertices,
-                        double *scratch)
-{
+INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
+                        double observations, double side, double hopeless, double *frame, double *length, double *round,
+                        double *residual, double *cost, double *vertices, double *scratch) {
     int n = part_end[parts - 1];
     Frame f = normal_frame(xy, n, least_axis);
     memcpy(frame, f.mean, sizeof f.mean);
@@ -328,8 +304,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         z[2 * i + 1] = f.to[2] * dx + f.to[3] * dy;
     }
     length[1] = 0;
-    for (int p = 0; p < parts; p++)
-        length[1] += gap_after(z, part_end, parts, p);
+    for (int p = 0; p < parts; p++) length[1] += gap_after(z, part_end, parts, p);
     Runs r;
     r.n = SAMPLES;
     length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
@@ -338,13 +313,12 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     double cap2 = cap * cap;
     fit_rounds(&r, &f, factor, length[0], observations, cap2, round);
 
-    for (int k = 0; k <= SIDES; k++)
-        cost[k] = residual[k] = INFINITY;
+    for (int k = 0; k <= SIDES; k++) cost[k] = residual[k] = INFINITY;
     double stretch[2] = {1, 1};
     runs_prepare(&r, 2, STIFFNESS);
     for (int way = 0; way < 2; way++)
-        best_polygons(&r, factor, way, STIFFNESS[way], stretch, cap2, length[0], observations, side, hopeless, residual, cost,
-                      vertices);
+        best_polygons(&r, factor, way, STIFFNESS[way], stretch, cap2, length[0], observations, side, hopeless, residual,
+                      cost, vertices);
     /* The ends of a long box may be as loose along it as its sides are across, as if it had been drawn square and
      * stretched, or less so: both are tried, as nobody says how a hand errs. */
     double p = hypot(f.back[0], f.back[2]), q = hypot(f.back[1], f.back[3]);
@@ -356,7 +330,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
             r.y[i] *= stretch[1];
         }
         runs_prepare(&r, 1, STIFFNESS);
-        best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, side, hopeless, residual, cost,
-                      vertices);
+        best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, side, hopeless, residual,
+                      cost, vertices);
     }
 }

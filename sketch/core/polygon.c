@@ -3,28 +3,23 @@
 
 #include <math.h>
 
-static double turn(const double *a, const double *b, const double *c)
-{
+static double turn(const double *a, const double *b, const double *c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
 /* Whether no two sides of a closed outline, (n, 2), cross or touch, but neighbours at their corner. */
-INK_API int32_t ink_is_simple(const double *v, int32_t n)
-{
+INK_API int32_t ink_is_simple(const double *v, int32_t n) {
     for (int i = 0; i < n; i++)
         for (int j = i + 2; j < n; j++) {
-            if (i == 0 && j == n - 1)
-                continue;
+            if (i == 0 && j == n - 1) continue;
             const double *a = v + 2 * i, *b = v + 2 * (i + 1), *c = v + 2 * j, *d = v + 2 * ((j + 1) % n);
-            if (turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0)
-                return 0;
+            if (turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0) return 0;
         }
     return 1;
 }
 
 /* Mean squared distance of stroke `name` from a closed outline, (n, 2) [pixels]. */
-INK_API double ink_off_outline(const double *samples, int32_t name, const double *outline, int32_t n)
-{
+INK_API double ink_off_outline(const double *samples, int32_t name, const double *outline, int32_t n) {
     double sum = 0;
     for (int i = 0; i < SAMPLES; i++) {
         const double *p = samples + 2 * (SAMPLES * name + i);
@@ -37,15 +32,13 @@ INK_API double ink_off_outline(const double *samples, int32_t name, const double
 }
 
 /* Distance of a point from a closed outline [pixels], negative inside (even-odd rule). */
-INK_API double ink_depth(double x, double y, const double *outline, int32_t n)
-{
+INK_API double ink_depth(double x, double y, const double *outline, int32_t n) {
     double best = INFINITY;
     int within = 0;
     for (int q = 0; q < n; q++) {
         const double *a = outline + 2 * q, *b = outline + 2 * ((q + 1) % n);
         best = fmin(best, segment_distance2(x, y, a, b));
-        if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]))
-            within = !within;
+        if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1])) within = !within;
     }
     return within ? -sqrt(best) : sqrt(best);
 }

@@ -6,8 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-double segment_distance2(double px, double py, const double a[2], const double b[2])
-{
+double segment_distance2(double px, double py, const double a[2], const double b[2]) {
     double dx = b[0] - a[0], dy = b[1] - a[1], l2 = dx * dx + dy * dy;
     double t = l2 > 0 ? ((px - a[0]) * dx + (py - a[1]) * dy) / l2 : 0;
     t = t < 0 ? 0 : t > 1 ? 1 : t;
@@ -15,8 +14,7 @@ double segment_distance2(double px, double py, const double a[2], const double b
     return ex * ex + ey * ey;
 }
 
-double sample_parts(const double *xy, const int32_t *part_end, int parts, double *x, double *y, int n)
-{
+double sample_parts(const double *xy, const int32_t *part_end, int parts, double *x, double *y, int n) {
     double total = 0;
     for (int p = 0, i = 0; p < parts; i = part_end[p++])
         for (int j = i + 1; j < part_end[p]; j++)
@@ -42,14 +40,12 @@ double sample_parts(const double *xy, const int32_t *part_end, int parts, double
 }
 
 /* The sum of q(t)² over m samples, q(t) = t² - mean(t²), t evenly from -1 to 1. */
-static double bow_squares(int m)
-{
+static double bow_squares(int m) {
     double g = m - 1, fourth = m * (m + 1.0) * (3.0 * m * m - 7) / (15 * g * g * g), mean = (m + 1) / (3 * g);
     return fourth - m * mean * mean;
 }
 
-void runs_prepare(Runs *r, int ways, const double *stiffness)
-{
+void runs_prepare(Runs *r, int ways, const double *stiffness) {
     int n = r->n;
     memcpy(r->x + n, r->x, n * sizeof *r->x);
     memcpy(r->y + n, r->y, n * sizeof *r->y);
@@ -74,8 +70,7 @@ void runs_prepare(Runs *r, int ways, const double *stiffness)
         squares[m] = m > 3 ? bow_squares(m) : INFINITY; /* fewer samples do not show a bow */
     }
     for (int i = 0; i < n; i++) {
-        for (int w = 0; w < ways; w++)
-            r->cost[w][i][0] = r->cost[w][i][1] = 0;
+        for (int w = 0; w < ways; w++) r->cost[w][i][0] = r->cost[w][i][1] = 0;
         for (int m = 2; m <= n; m++) {
             int e = i + m;
             double ax = r->sx[e] - r->sx[i], ay = r->sy[e] - r->sy[i];
@@ -84,8 +79,10 @@ void runs_prepare(Runs *r, int ways, const double *stiffness)
             double yy = r->syy[e] - r->syy[i] - ay * ay * inverse[m];
             double half = 0.5 * (xx - yy), mid = 0.5 * (xx + yy), spread = sqrt(half * half + xy * xy);
             double least = fmax(mid - spread, 0), most = mid + spread, c = 0.5 * (i + e - 1), k = 2.0 / (m - 1);
-            double qx = (r->siix[e] - r->siix[i] - 2 * c * (r->six[e] - r->six[i]) + c * c * ax) * k * k - mean2[m] * ax;
-            double qy = (r->siiy[e] - r->siiy[i] - 2 * c * (r->siy[e] - r->siy[i]) + c * c * ay) * k * k - mean2[m] * ay;
+            double qx =
+                (r->siix[e] - r->siix[i] - 2 * c * (r->six[e] - r->six[i]) + c * c * ax) * k * k - mean2[m] * ax;
+            double qy =
+                (r->siiy[e] - r->siiy[i] - 2 * c * (r->siy[e] - r->siy[i]) + c * c * ay) * k * k - mean2[m] * ay;
             /* the bow's sum along the normal, squared: the normal's projector is (most - S) / (most - least) */
             double along = most * (qx * qx + qy * qy) - (xx * qx * qx + 2 * xy * qx * qy + yy * qy * qy);
             double bowed = spread > 0 ? along / (2 * spread) : 0;
@@ -99,8 +96,7 @@ void runs_prepare(Runs *r, int ways, const double *stiffness)
 /* Orthogonal regression, then the bow b along q(t) = t² - mean(t²), t from -1 to 1 over the run, which is orthogonal to
  * the line. A bow of a few hundredths of the side is usual; as a normal prior of that spread it is a ridge term in the
  * squares: stiffness (b / length)². */
-Line runs_line(const Runs *r, int first, int count, double stiffness)
-{
+Line runs_line(const Runs *r, int first, int count, double stiffness) {
     int e = first + count;
     double w = 1.0 / count;
     double ax = r->sx[e] - r->sx[first], ay = r->sy[e] - r->sy[first];
@@ -127,8 +123,7 @@ Line runs_line(const Runs *r, int first, int count, double stiffness)
     least = least > 0 ? least : 0;
     double length2 = fmax(12 * most * w, 1e-12);
     Line line = {mx, my, dx, dy, 0, least, least};
-    if (count < 4)
-        return line;
+    if (count < 4) return line;
     double c = 0.5 * (first + z), k = 0.5 * (z - first); /* t = (i - c) / k */
     double mean2 = (k + 1) / (3 * k);                    /* mean of t² over the run */
     double qx = (r->siix[e] - r->siix[first] - 2 * c * (r->six[e] - r->six[first]) + c * c * ax) / (k * k) - mean2 * ax;
@@ -137,18 +132,15 @@ Line runs_line(const Runs *r, int first, int count, double stiffness)
     double qq = bow_squares(count);
     line.bow = hq / (qq + stiffness / length2);
     line.cost -= hq * line.bow;
-    if (line.cost < 0)
-        line.cost = 0;
+    if (line.cost < 0) line.cost = 0;
     return line;
 }
 
-void split_begin(Split *s, const Runs *r, int way, int start)
-{
+void split_begin(Split *s, const Runs *r, int way, int start) {
     int n = s->n = r->n;
     for (int i = 0; i < n; i++) {
         const double *row = r->cost[way][start + i < n ? start + i : start + i - n];
-        for (int j = i; j <= n; j++)
-            s->run[j][i] = row[j - i];
+        for (int j = i; j <= n; j++) s->run[j][i] = row[j - i];
     }
     for (int j = 0; j <= n; j++) {
         s->best[1][j] = j ? s->run[j][0] : 0;
@@ -156,8 +148,7 @@ void split_begin(Split *s, const Runs *r, int way, int start)
     }
 }
 
-void split_further(Split *s, int k)
-{
+void split_further(Split *s, int k) {
     const double *before = s->best[k - 1];
     for (int j = 0; j <= s->n; j++) {
         double low = INFINITY;
@@ -174,8 +165,7 @@ void split_further(Split *s, int k)
     }
 }
 
-void split_bounds(const Split *s, int k, int cut[SIDES + 1])
-{
+void split_bounds(const Split *s, int k, int cut[SIDES + 1]) {
     cut[k] = s->n;
     for (int q = k, j = s->n; q > 0; q--) {
         j = s->from[q][j];
@@ -183,8 +173,7 @@ void split_bounds(const Split *s, int k, int cut[SIDES + 1])
     }
 }
 
-void corner(const Line *a, const Line *b, const double end[2], const double begin[2], double out[2])
-{
+void corner(const Line *a, const Line *b, const double end[2], const double begin[2], double out[2]) {
     double mx = 0.5 * (end[0] + begin[0]), my = 0.5 * (end[1] + begin[1]);
     double gap = hypot(end[0] - begin[0], end[1] - begin[1]);
     double sine = a->dx * b->dy - a->dy * b->dx;

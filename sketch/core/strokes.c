@@ -8,15 +8,13 @@ enum { BENDS = 6 };
 
 /* Where the little turn back ends that a pen leaves where it goes down: the last turn of over 60 degrees within `reach` of
  * the start; 0 for none. Steps run from `first` by `step` (1 or -1) over n points. */
-static int hook_end(const double *p, int first, int step, int n, double reach)
-{
+static int hook_end(const double *p, int first, int step, int n, double reach) {
     double along = 0;
     int best = 0;
     for (int i = 1; i + 1 < n; i++) {
         const double *q = p + 2 * (first + step * i), *before = q - 2 * step, *start = p + 2 * first;
         along += hypot(q[0] - before[0], q[1] - before[1]);
-        if (along > reach)
-            break;
+        if (along > reach) break;
         int j = i;
         double ahead = 0, ax = 0, ay = 0;
         while (j + 1 < n && ahead < reach) { /* as far ahead as one may look back */
@@ -27,14 +25,12 @@ static int hook_end(const double *p, int first, int step, int n, double reach)
             j++;
         }
         double bx = q[0] - start[0], by = q[1] - start[1];
-        if (ax * bx + ay * by < 0.5 * hypot(ax, ay) * hypot(bx, by))
-            best = i;
+        if (ax * bx + ay * by < 0.5 * hypot(ax, ay) * hypot(bx, by)) best = i;
     }
     return best;
 }
 
-static void moments(const double *p, int n, double *length, double mean[2], double s[3])
-{
+static void moments(const double *p, int n, double *length, double mean[2], double s[3]) {
     double l = 0, m[2] = {0, 0};
     s[0] = s[1] = s[2] = 0;
     for (int i = 1; i < n; i++) {
@@ -58,14 +54,12 @@ static void moments(const double *p, int n, double *length, double mean[2], doub
     mean[1] = p[1] + m[1];
 }
 
-static double least_spread(const double s[3])
-{
+static double least_spread(const double s[3]) {
     double half = 0.5 * (s[0] - s[2]);
     return sqrt(fmax(0.5 * (s[0] + s[2]) - sqrt(half * half + s[1] * s[1]), 0));
 }
 
-static void polylines(const double *p, int n, Runs *r, double *residual, double *vertices)
-{
+static void polylines(const double *p, int n, Runs *r, double *residual, double *vertices) {
     double x0 = p[0], y0 = p[1];
     int cut[SIDES + 1];
     Split split;
@@ -77,13 +71,11 @@ static void polylines(const double *p, int n, Runs *r, double *residual, double 
     split_begin(&split, r, 0, 0);
     residual[0] = INFINITY;
     for (int k = 1; k <= BENDS; k++) {
-        if (k > 1)
-            split_further(&split, k);
+        if (k > 1) split_further(&split, k);
         split_bounds(&split, k, cut);
         Line side[BENDS];
         double *v = vertices + 2 * (BENDS + 1) * k, sum = 0;
-        for (int q = 0; q < k; q++)
-            side[q] = runs_line(r, cut[q], cut[q + 1] - cut[q], 1e9);
+        for (int q = 0; q < k; q++) side[q] = runs_line(r, cut[q], cut[q + 1] - cut[q], 1e9);
         for (int q = 1; q < k; q++) {
             int b = cut[q];
             double end[2] = {r->x[b - 1], r->y[b - 1]}, begin[2] = {r->x[b], r->y[b]};
@@ -113,8 +105,7 @@ static void polylines(const double *p, int n, Runs *r, double *residual, double 
  * samples (SAMPLES, 2) in equal steps of length; residual[k]: mean squared distance from its best k segments;
  * vertices[k][BENDS + 1][2]. A stroke without length has measure 0. */
 INK_API void ink_strokes(const double *xy, const int32_t *ends, int32_t count, double *clean, int32_t *clean_ends,
-                         double *measure, double *samples, double *residual, double *vertices)
-{
+                         double *measure, double *samples, double *residual, double *vertices) {
     int out = 0;
     Runs r;
     r.n = SAMPLES;

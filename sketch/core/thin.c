@@ -12,28 +12,22 @@
 enum { INK = 1, LISTED = 2, GOING = 4 };
 
 /* The eight neighbours clockwise from the north, as bits 0 to 7 of a neighbourhood. */
-static void neighbour_offsets(int width, int offset[8])
-{
+static void neighbour_offsets(int width, int offset[8]) {
     const int all[8] = {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1};
-    for (int k = 0; k < 8; k++)
-        offset[k] = all[k];
+    for (int k = 0; k < 8; k++) offset[k] = all[k];
 }
 
-static unsigned neighbourhood(const uint8_t *p, const int offset[8])
-{
+static unsigned neighbourhood(const uint8_t *p, const int offset[8]) {
     unsigned bits = 0;
-    for (int k = 0; k < 8; k++)
-        bits |= (unsigned)(p[offset[k]] & INK) << k;
+    for (int k = 0; k < 8; k++) bits |= (unsigned)(p[offset[k]] & INK) << k;
     return bits;
 }
 
 /* Whether a pixel with these neighbours goes in the first (0) or second (1) subiteration. */
-static int goes(unsigned bits, int second)
-{
+static int goes(unsigned bits, int second) {
     const unsigned p2 = bits & 1, p3 = bits >> 1 & 1, p4 = bits >> 2 & 1, p5 = bits >> 3 & 1;
     const unsigned p6 = bits >> 4 & 1, p7 = bits >> 5 & 1, p8 = bits >> 6 & 1, p9 = bits >> 7 & 1;
-    const unsigned components =
-        ((!p2) & (p3 | p4)) + ((!p4) & (p5 | p6)) + ((!p6) & (p7 | p8)) + ((!p8) & (p9 | p2));
+    const unsigned components = ((!p2) & (p3 | p4)) + ((!p4) & (p5 | p6)) + ((!p6) & (p7 | p8)) + ((!p8) & (p9 | p2));
     const unsigned n1 = (p9 | p2) + (p3 | p4) + (p5 | p6) + (p7 | p8);
     const unsigned n2 = (p2 | p3) + (p4 | p5) + (p6 | p7) + (p8 | p9);
     const unsigned n = n1 < n2 ? n1 : n2;
@@ -42,15 +36,13 @@ static int goes(unsigned bits, int second)
 }
 
 /* Whether the pixel only fills the step of a staircase: two neighbours at a right angle that touch without it. */
-static int is_step(unsigned bits)
-{
+static int is_step(unsigned bits) {
     const unsigned n = bits & 1, e = bits >> 2 & 1, s = bits >> 4 & 1, w = bits >> 6 & 1;
     const unsigned ne = bits >> 1 & 1, se = bits >> 3 & 1, sw = bits >> 5 & 1, nw = bits >> 7 & 1;
     return (n & e & !s & !w & !sw) | (e & s & !n & !w & !nw) | (s & w & !n & !e & !ne) | (w & n & !e & !s & !se);
 }
 
-static int32_t count_ink(uint8_t *mask, int width, int height)
-{
+static int32_t count_ink(uint8_t *mask, int width, int height) {
     int32_t count = 0;
     for (int y = 0; y < height; y++) {
         uint8_t *row = mask + (size_t)y * width;
@@ -63,8 +55,7 @@ static int32_t count_ink(uint8_t *mask, int width, int height)
     return count;
 }
 
-static size_t list_border(uint8_t *mask, int width, int height, const int offset[8], int32_t *list)
-{
+static size_t list_border(uint8_t *mask, int width, int height, const int offset[8], int32_t *list) {
     size_t count = 0;
     for (int y = 1; y < height - 1; y++) {
         uint8_t *row = mask + (size_t)y * width;
@@ -80,13 +71,11 @@ static size_t list_border(uint8_t *mask, int width, int height, const int offset
 
 /* One subiteration over the listed pixels: those that go are cleared and the ink they lay bare is listed in
  * their place.  A pixel is listed at most once, so `next` never holds more than there is ink. */
-static size_t peel(uint8_t *mask, const int offset[8], const uint8_t table[256], const int32_t *list,
-                   size_t count, int32_t *next)
-{
+static size_t peel(uint8_t *mask, const int offset[8], const uint8_t table[256], const int32_t *list, size_t count,
+                   int32_t *next) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++)
-        if (table[neighbourhood(mask + list[i], offset)])
-            mask[list[i]] |= GOING;
+        if (table[neighbourhood(mask + list[i], offset)]) mask[list[i]] |= GOING;
     for (size_t i = 0; i < count; i++) {
         uint8_t *p = mask + list[i];
         if (!(*p & GOING)) {
@@ -107,32 +96,27 @@ static size_t peel(uint8_t *mask, const int offset[8], const uint8_t table[256],
 
 /* Thin a mask (0 is paper) in place; what is left is 1.  The outermost rows and columns count as paper.
  * Returns the number of pixels left, or -1 where memory is short. */
-EXPORT int32_t ink_thin(uint8_t *mask, int32_t width, int32_t height)
-{
+EXPORT int32_t ink_thin(uint8_t *mask, int32_t width, int32_t height) {
     if (width < 3 || height < 3) {
-        for (int64_t i = 0; i < (int64_t)width * height; i++)
-            mask[i] = 0;
+        for (int64_t i = 0; i < (int64_t)width * height; i++) mask[i] = 0;
         return 0;
     }
     const int32_t ink = count_ink(mask, width, height);
     int32_t *list = malloc(((size_t)ink + 1) * 2 * sizeof *list), left = -1;
-    if (!list)
-        return left;
+    if (!list) return left;
     int32_t *next = list + ink + 1;
     int offset[8];
     uint8_t table[2][256];
     neighbour_offsets(width, offset);
     for (unsigned bits = 0; bits < 256; bits++)
-        for (int second = 0; second < 2; second++)
-            table[second][bits] = (uint8_t)goes(bits, second);
+        for (int second = 0; second < 2; second++) table[second][bits] = (uint8_t)goes(bits, second);
 
     size_t count = list_border(mask, width, height, offset, list);
     for (int idle = 0, second = 0; idle < 2; second = !second) {
         const size_t before = count;
         int32_t gone = 0;
         count = peel(mask, offset, table[second], list, before, next);
-        for (size_t i = 0; i < before; i++)
-            gone += !mask[list[i]];
+        for (size_t i = 0; i < before; i++) gone += !mask[list[i]];
         idle = gone ? 0 : idle + 1;
         int32_t *swap = list;
         list = next;

@@ -24,17 +24,14 @@ typedef struct {
     int32_t point_count, chain_count, node_count;
 } Chains;
 
-static int degree(const Grid *g, int32_t at)
-{
+static int degree(const Grid *g, int32_t at) {
     int n = 0;
-    for (int k = 0; k < 8; k++)
-        n += g->mask[at + g->offset[k]];
+    for (int k = 0; k < 8; k++) n += g->mask[at + g->offset[k]];
     return n;
 }
 
 /* Mark the junction pixels that hang together with `at` as one node. `stack` has room for all pixels. */
-static void flood_node(Grid *g, int32_t at, int32_t id, int32_t *stack)
-{
+static void flood_node(Grid *g, int32_t at, int32_t id, int32_t *stack) {
     int32_t top = 0;
     stack[top++] = at;
     g->node[at] = id + 1;
@@ -51,8 +48,7 @@ static void flood_node(Grid *g, int32_t at, int32_t id, int32_t *stack)
 }
 
 /* Walk the chain that leaves `from` (a node's pixel, or -1) by `at` until a node or an end. */
-static void walk(Grid *g, int32_t from, int32_t at, Chains *out)
-{
+static void walk(Grid *g, int32_t from, int32_t at, Chains *out) {
     int32_t end = FREE_END, before = from;
     const int32_t first = at;
     int32_t *ends = out->ends + 2 * (size_t)out->chain_count;
@@ -62,8 +58,7 @@ static void walk(Grid *g, int32_t from, int32_t at, Chains *out)
         int32_t next = -1;
         for (int k = 0; k < 8; k++) {
             const int32_t q = at + g->offset[k];
-            if (!g->mask[q] || q == before)
-                continue;
+            if (!g->mask[q] || q == before) continue;
             if (g->node[q] > 0)
                 end = g->node[q] - 1;
             else if (g->node[q] == 0)
@@ -71,8 +66,7 @@ static void walk(Grid *g, int32_t from, int32_t at, Chains *out)
             else if (q == first && from < 0 && at != first)
                 end = CLOSED;
         }
-        if (end >= 0)
-            break;
+        if (end >= 0) break;
         before = at;
         at = next;
     }
@@ -81,23 +75,18 @@ static void walk(Grid *g, int32_t from, int32_t at, Chains *out)
     out->start[++out->chain_count] = out->point_count;
 }
 
-static void walk_all(Grid *g, const int32_t *pixels, int32_t count, Chains *out)
-{
+static void walk_all(Grid *g, const int32_t *pixels, int32_t count, Chains *out) {
     for (int32_t i = 0; i < count; i++) {
-        if (g->node[pixels[i]] <= 0)
-            continue;
+        if (g->node[pixels[i]] <= 0) continue;
         for (int k = 0; k < 8; k++) {
             const int32_t q = pixels[i] + g->offset[k];
-            if (g->mask[q] && g->node[q] == 0)
-                walk(g, pixels[i], q, out);
+            if (g->mask[q] && g->node[q] == 0) walk(g, pixels[i], q, out);
         }
     }
     for (int32_t i = 0; i < count; i++) /* then from free ends, then what is left: rings */
-        if (g->node[pixels[i]] == 0 && degree(g, pixels[i]) <= 1)
-            walk(g, -1, pixels[i], out);
+        if (g->node[pixels[i]] == 0 && degree(g, pixels[i]) <= 1) walk(g, -1, pixels[i], out);
     for (int32_t i = 0; i < count; i++)
-        if (g->node[pixels[i]] == 0)
-            walk(g, -1, pixels[i], out);
+        if (g->node[pixels[i]] == 0) walk(g, -1, pixels[i], out);
 }
 
 /* Trace a skeleton of `count` pixels, as ink_thin leaves it.
@@ -106,24 +95,19 @@ static void walk_all(Grid *g, const int32_t *pixels, int32_t count, Chains *out)
  * `points`' page order that belongs to one: pairs are written to node_pixels (pixel index) and node_ids.
  * counts gets the numbers of chains, nodes and node pixels.  Returns 0, or -1 where memory is short. */
 EXPORT int32_t ink_trace(const uint8_t *mask, int32_t width, int32_t height, int32_t count, int32_t *points,
-                         int32_t *start, int32_t *ends, int32_t *node_pixels, int32_t *node_ids,
-                         int32_t counts[3])
-{
+                         int32_t *start, int32_t *ends, int32_t *node_pixels, int32_t *node_ids, int32_t counts[3]) {
     Grid g = {mask, width, {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1}, NULL};
     Chains out = {points, start, ends, 0, 0, 0};
     int32_t status = -1, found = 0;
     const size_t size = (size_t)width * height;
     int32_t *pixels = malloc(((size_t)count + 1) * 2 * sizeof *pixels);
     g.node = calloc(size, sizeof *g.node);
-    if (!pixels || !g.node)
-        goto out;
+    if (!pixels || !g.node) goto out;
     int32_t *stack = pixels + count + 1;
     for (size_t i = 0; i < size; i++)
-        if (mask[i] && found < count)
-            pixels[found++] = (int32_t)i;
+        if (mask[i] && found < count) pixels[found++] = (int32_t)i;
     for (int32_t i = 0; i < found; i++)
-        if (!g.node[pixels[i]] && degree(&g, pixels[i]) >= 3)
-            flood_node(&g, pixels[i], out.node_count++, stack);
+        if (!g.node[pixels[i]] && degree(&g, pixels[i]) >= 3) flood_node(&g, pixels[i], out.node_count++, stack);
     counts[2] = 0;
     for (int32_t i = 0; i < found; i++) {
         if (g.node[pixels[i]] > 0) {

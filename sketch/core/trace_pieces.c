@@ -9,21 +9,17 @@
  * mask: 0 is paper; the outermost rows and columns count as paper.  pixels: room for every ink pixel; gets their
  * indices.  start: room for one more than there are ink pixels; gets where each piece starts in pixels, and the end.
  * Returns the number of pieces, or -1 where memory is short. */
-EXPORT int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, int32_t *pixels, int32_t *start)
-{
+EXPORT int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, int32_t *pixels, int32_t *start) {
     const int32_t offset[8] = {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1};
     int32_t pieces = 0, listed = 0;
     uint8_t *left = calloc((size_t)width * height + 1, 1);
-    if (!left)
-        return -1;
+    if (!left) return -1;
     for (int32_t y = 1; y < height - 1; y++)
-        for (int32_t x = 1; x < width - 1; x++)
-            left[(size_t)y * width + x] = mask[(size_t)y * width + x] != 0;
+        for (int32_t x = 1; x < width - 1; x++) left[(size_t)y * width + x] = mask[(size_t)y * width + x] != 0;
     start[0] = 0;
     for (int32_t y = 1; y < height - 1; y++) {
         for (int32_t at = y * width + 1; at < (y + 1) * width - 1; at++) {
-            if (!left[at])
-                continue;
+            if (!left[at]) continue;
             left[at] = 0;
             pixels[listed++] = at;
             /* what has been listed of this piece is its own queue */
