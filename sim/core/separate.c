@@ -28,6 +28,7 @@ typedef struct Slide {
 
 typedef struct Row {
     int32_t a, b;
+    int32_t shape_a, shape_b;
     Vec normal;
     double spin_a, spin_b;
     double gap;      /* negative: overlap */
@@ -135,8 +136,9 @@ static int sort_out(Separation *s) {
     return status;
 }
 
-static int add_rows(Separation *s, const Manifold *m, int32_t a, int32_t b) {
+static int add_rows(Separation *s, const Manifold *m, Pair shapes) {
     const World *world = s->world;
+    int32_t a = world->shape[shapes.a].body, b = world->shape[shapes.b].body;
     if (s->row_count + 2 > s->row_capacity) {
         int32_t capacity = 2 * s->row_capacity + 64;
         Row *more = realloc(s->row, (size_t)capacity * sizeof *more);
@@ -150,7 +152,7 @@ static int add_rows(Separation *s, const Manifold *m, int32_t a, int32_t b) {
     for (int32_t k = 0; k < m->count; k++) {
         double gap = m->point[k].separation;
         if (fabs(gap) <= s->touching) gap = 0; /* touching already: not moved for the sake of rounding */
-        Row row = {.a = a, .b = b, .normal = m->normal, .gap = gap};
+        Row row = {.a = a, .b = b, .shape_a = shapes.a, .shape_b = shapes.b, .normal = m->normal, .gap = gap};
         row.spin_a = vcross(vsub(m->point[k].point, world->body[a].position), m->normal);
         row.spin_b = vcross(vsub(m->point[k].point, world->body[b].position), m->normal);
         row.mobility = sa->inverse_mass + sb->inverse_mass + sa->inverse_moment * row.spin_a * row.spin_a +
@@ -185,7 +187,7 @@ static int find_rows(Separation *s, double margin) {
                 manifold_find(&s->posed.outline[p], &s->posed.outline[q], margin, &m);
                 if (m.count == 0) continue;
                 s->deepest = fmax(s->deepest, -m.gap);
-                status = add_rows(s, &m, a->body, b->body);
+                status = add_rows(s, &m, pair);
             }
     }
     for (int32_t i = 0; i < world->joint_count; i++)
@@ -281,18 +283,27 @@ static bool solve(Separation *s, bool from_drawn, double *farthest) {
     return most <= enough;
 }
 
-/* What still overlaps is jammed, with all that it touches: back to where it was drawn, to share the overlap out. */
+static bool jam(Slide *a, Slide *b) {
+    bool new_a = a->inverse_mass > 0 && !a->jammed, new_b = b->inverse_mass > 0 && !b->jammed;
+    if (new_a) a->jammed = true;
+    if (new_b) b->jammed = true;
+    return new_a || new_b;
+}
+
+/* What still overlaps, or came off its joint, is jammed, with all that it touches or is joined to. Back to where it was drawn. */
 static void mark_jammed(Separation *s) {
     World *world = s->world;
     for (bool more = true; more;) {
         more = false;
         for (int32_t i = 0; i < s->row_count; i++) {
-            const Row *row = &s->row[i];
-            Slide *a = &s->slide[row->a], *b = &s->slide[row->b];
-            bool jammed = row->gap < -s->touching || a->jammed || b->jammed;
-            if (!jammed || (row->gap > s->touching && row->gap > -row->gap)) continue;
-            if (a->inverse_mass > 0 && !a->jammed) a->jammed = more = true;
-            if (b->inverse_mass > 0 && !b->jammed) b->jammed = more = true;
+            Slide *a = &s->slide[s->row[i].a], *b = &s->slide[s->row[i].b];
+            double gap = s->row[i].gap;
+            if (gap < -s->touching || (gap <= s->touching && (a->jammed || b->jammed))) more = jam(a, b) || more;
+        }
+        for (int32_t i = 0; i < world->joint_count; i++) {
+            Slide *a = &s->slide[world->joint[i].a], *b = &s->slide[world->joint[i].b];
+            bool apart = vlength(joint_gap(world, &world->joint[i])) > s->touching;
+            if (apart || a->jammed || b->jammed) more = jam(a, b) || more;
         }
     }
     for (int32_t i = 0; i < world->body_count; i++) {
@@ -300,6 +311,21 @@ static void mark_jammed(Separation *s) {
         world->body[i].position = s->slide[i].drawn_position;
         world->body[i].angle = s->slide[i].drawn_angle;
     }
+}
+
+/* Jammed bodies on joints are let overlap as they were drawn: what they were held by is not known. Whether there are any. */
+static int let_joined_overlap(Separation *s, bool *any) {
+    *any = false;
+    for (int32_t i = 0; i < s->row_count; i++) {
+        const Row *row = &s->row[i];
+        const Slide *a = &s->slide[row->a], *b = &s->slide[row->b];
+        bool joined = (a->jammed && a->inverse_moment > 0) || (b->jammed && b->inverse_moment > 0);
+        if (!joined || row->gap >= -s->touching || !world_collides(s->world, row->shape_a, row->shape_b)) continue;
+        if (world_keep_apart(s->world, row->shape_a, row->shape_b) != SIM_OK) return SIM_OUT_OF_MEMORY;
+        s->world->profile.let_overlap++;
+        *any = true;
+    }
+    return SIM_OK;
 }
 
 static void report(const Separation *s) {
@@ -328,21 +354,30 @@ static int iterate(Separation *s, int32_t rounds, bool from_drawn, bool *reached
     return SIM_OK;
 }
 
+/* The overlaps that cannot all be undone, shared out. */
+static int share_out(Separation *s) {
+    double farthest;
+    int status = find_rows(s, s->margin);
+    s->budget = ROW_BUDGET / 10;
+    if (status == SIM_OK) solve(s, false, &farthest);
+    return status;
+}
+
 static int move_apart(Separation *s) {
     World *world = s->world;
-    bool reached;
+    bool reached, joined = true;
     int status = iterate(s, ROUNDS, false, &reached);
-    if (status != SIM_OK) return status;
-    if (!reached) {
-        double farthest;
-        status = find_rows(s, s->margin);
-        if (status != SIM_OK) return status;
+    while (status == SIM_OK && !reached && joined) {
         mark_jammed(s);
         status = find_rows(s, s->margin);
+        if (status == SIM_OK) status = let_joined_overlap(s, &joined);
+        if (status != SIM_OK || !joined) break;
+        for (int32_t i = 0; i < world->body_count; i++) s->slide[i].jammed = false;
         s->budget = ROW_BUDGET / 10;
-        if (status == SIM_OK) solve(s, false, &farthest);
-        return status;
+        status = iterate(s, ROUNDS, false, &reached);
     }
+    if (status != SIM_OK) return status;
+    if (!reached) return share_out(s);
     /* Each round took the least motion from the last; all together need not have: again, from the drawing. */
     for (int32_t i = 0; i < world->body_count; i++) {
         s->slide[i].apart_position = world->body[i].position;
