@@ -36,13 +36,6 @@ void crowd_destroy(Crowd *crowd) {
     free(crowd);
 }
 
-static void touch_pivots(Crowd *crowd) {
-    for (int32_t i = 0; i < crowd->pivots.count; i++) {
-        const Pivot *p = &crowd->pivots.pivot[i];
-        crowd->touched[p->a] = crowd->touched[p->b] = true;
-    }
-}
-
 static void accelerate(Crowd *crowd, const World *world, double dt) {
     Vec gain = vscale(world->gravity, dt);
     for (int32_t k = 0; k < crowd->active_count; k++) {
@@ -114,14 +107,13 @@ static int frame(Crowd *crowd, World *world, double dt) {
     if (status != SIM_OK) return status;
     status = pivots_load(&crowd->pivots, world, crowd->mover);
     if (status != SIM_OK) return status;
-    touch_pivots(crowd);
     pivots_factor(&crowd->pivots, crowd->mover);
     for (int32_t k = 0; k < substeps && status == SIM_OK; k++) status = substep(crowd, world, dt - k * h, h);
     if (status != SIM_OK) return status;
+    status = touch_finish(crowd, world, dt);
+    if (status != SIM_OK) return status;
     store(crowd, world);
     rest_update(crowd, world, dt);
-    status = touch_store_near(crowd);
-    if (status != SIM_OK) return status;
     return memory_store(&crowd->memory, crowd->contact, crowd->contact_count, crowd->mover);
 }
 

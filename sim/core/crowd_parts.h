@@ -72,7 +72,7 @@ void touch_place(Crowd *crowd, const World *world, int32_t body);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
 void touch_refresh(Crowd *crowd, World *world, double left, double threshold);
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
-int touch_store_near(Crowd *crowd);
+int touch_finish(Crowd *crowd, const World *world, double dt);
 
 /* crowd_rest.c */
 int rest_create(Crowd *crowd, const World *world);

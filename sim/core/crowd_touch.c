@@ -342,7 +342,6 @@ static int consider(Crowd *crowd, World *world, Near near, double dt, double sub
     if (gap <= soon && soon <= FAST * reach) contact = look(crowd, world, &near, soon, later + MORE * reach);
     if (!contact) crowd->near[crowd->near_count++] = near;
     if (near.gap > later) return SIM_OK;
-    crowd->touched[near.a] = crowd->touched[near.b] = true;
     bool close = near.gap <= skin;
     *woke = rest_disturb(crowd, world, near.a, near.b, close) || *woke;
     *woke = rest_disturb(crowd, world, near.b, near.a, close) || *woke;
@@ -380,7 +379,6 @@ static void load(Crowd *crowd, const World *world) {
         const Body *body = &world->body[i];
         Mover *m = &crowd->mover[i];
         *m = (Mover){0};
-        crowd->touched[i] = false;
         if (body->mode != MODE_CROWD) continue;
         crowd->active[crowd->active_count++] = i;
         m->velocity = body->velocity;
@@ -562,8 +560,24 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     return SIM_OK;
 }
 
-/* At the end of a frame: what is known of the gaps, for the next one. */
-int touch_store_near(Crowd *crowd) {
+/* Which bodies touch something, hang on something, or may meet something in another frame like this one. */
+static void find_touched(Crowd *crowd, const World *world, double dt) {
+    bool *touched = crowd->touched;
+    for (int32_t k = 0; k < crowd->active_count; k++) touched[crowd->active[k]] = false;
+    for (int32_t i = 0; i < crowd->pivots.count; i++)
+        touched[crowd->pivots.pivot[i].a] = touched[crowd->pivots.pivot[i].b] = true;
+    for (int32_t i = 0; i < crowd->contact_count; i++)
+        touched[crowd->contact[i].a] = touched[crowd->contact[i].b] = true;
+    for (int32_t i = 0; i < crowd->near_count; i++) {
+        const Near *near = &crowd->near[i];
+        if (gap_now(crowd, near) <= closing(crowd, world, near, dt) + skin_of(world, near))
+            touched[near->a] = touched[near->b] = true;
+    }
+}
+
+/* At the end of a frame: who touches, and what is known of the gaps, for the next one. */
+int touch_finish(Crowd *crowd, const World *world, double dt) {
+    find_touched(crowd, world, dt);
     if (index_room(&crowd->last_index, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     index_clear(&crowd->last_index);
     for (int32_t i = 0; i < crowd->near_count; i++) {
