@@ -12,8 +12,10 @@
 
 int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, double end) {
     size_t n = (size_t)world->body_count;
-    /* A gap of a twentieth of the tolerance moves nothing farther than that; rounding sets the least. */
-    Slack slack = {.gap = fmax(0.05 * tolerance, 1e-10 * world->size), .root = 1e-14 * world->size};
+    /* A gap of a twentieth of the tolerance moves nothing farther than that, and is small beside every shape; rounding
+     * sets the least. */
+    double gap = fmin(0.05 * tolerance, 1e-3 * world->thinnest);
+    Slack slack = {.gap = fmax(gap, 1e-10 * world->size), .root = 1e-14 * world->size};
     slack.speed = slack.gap;
     slack.deep = fmax(4 * slack.gap, 0.05 * world->thinnest);
     *e = (Exact){.world = world, .recorder = recorder, .slack = slack, .tolerance = tolerance, .end = end};

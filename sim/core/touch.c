@@ -102,7 +102,6 @@ typedef struct Search {
     Mover a, b;
     const Feature *const *closed;
     int32_t closed_count;
-    double distance; /* between the centres where the search starts */
 } Search;
 
 static bool is_closed(const Search *s, const Feature *f) {
@@ -200,7 +199,7 @@ static double search_shapes(const Search *s, const Shape *sa, const Shape *sb, d
 
 double first_touch(const World *world, Mover a, Mover b, double from, double to, const Slack *slack,
                    const Feature *const *closed, int32_t closed_count) {
-    Search s = {world, slack, a, b, closed, closed_count, 0};
+    Search s = {world, slack, a, b, closed, closed_count};
     const Body *body_a = &world->body[a.body], *body_b = &world->body[b.body];
     double best = INFINITY;
     for (int32_t i = body_a->first_shape; i < body_a->first_shape + body_a->shape_count; i++)
