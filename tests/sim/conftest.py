@@ -1,21 +1,11 @@
 import ctypes
-import importlib.util
 import subprocess
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pytest
-
-ROOT = Path(__file__).resolve().parents[2]
-
-
-def build_backend():
-    spec = importlib.util.spec_from_file_location("native_backend", ROOT / ".packaging" / "native_backend.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+from core_build import ROOT, build_backend
 
 
 @pytest.fixture(scope="session")
@@ -40,9 +30,6 @@ class Run:
     velocities: np.ndarray
     spins: np.ndarray
     modes: np.ndarray
-
-
-FIXED, REST = 0, 1  # of the core's modes
 
 
 @pytest.fixture(scope="session")

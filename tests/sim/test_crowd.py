@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import FIXED, REST
+from core_build import FIXED, REST
 
 from sim import Scene
 
