@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import re
 import signal
@@ -11,12 +12,20 @@ from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from cli.arguments import Parser, PrintVersion, UsageError
-from cli.commands import batch, bench, completion, doctor, recognize, simulate
 from cli.progress import error
 
 __all__ = ["main"]
 
 DONE, FAILED, USAGE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 3, 130
+
+COMMANDS = {
+    "simulate": "run a drawing or a scene",
+    "recognize": "read a drawing as a scene",
+    "batch": "run many drawings or scenes at once",
+    "bench": "measure this installation",
+    "doctor": "say what is installed and what works",
+    "completion": "print what a shell needs to complete this command",
+}
 
 EPILOG = """\
 examples:
@@ -29,12 +38,15 @@ exit status: 0 done, 1 something inside failed, 2 wrong usage, 3 bad input
 """
 
 
-def build_parser() -> Parser:
+def build_parser(wanted: str | None = None) -> Parser:
+    """The parser of the command line, with the options of all commands or of one; each one's import takes time."""
     parser = Parser(prog="sketchsim", description="Draw a machine, watch it run.", epilog=EPILOG)
     parser.add_argument("--version", action=PrintVersion)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (recognize, simulate, batch, bench, doctor, completion):
-        command.add_to(commands)
+    for name, summary in COMMANDS.items():
+        command = commands.add_parser(name, help=summary)
+        if wanted in (None, name):
+            importlib.import_module(f"cli.commands.{name}").configure(command)
     return parser
 
 
@@ -43,7 +55,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _join_negative_vectors(sys.argv[1:] if argv is None else argv)
     restore = _terminate_as_interrupt()
     try:
-        options = build_parser().parse_args(arguments)
+        wanted = next((word for word in arguments if not word.startswith("-")), "")
+        options = build_parser(wanted).parse_args(arguments)
         status: int = options.run(options)
         sys.stdout.flush()
         return status

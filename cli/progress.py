@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 import time
 
@@ -48,7 +47,9 @@ class Progress:
             line += f"  {done:4.0%}"
             if done > 0.02:
                 line += f"  {(now - self._began) * (1 - done) / done:.0f} s left"
-        line = line[: shutil.get_terminal_size().columns - 1]
+        from shutil import get_terminal_size
+
+        line = line[: get_terminal_size().columns - 1]
         self._show(line)
 
     def _show(self, line: str) -> None:

@@ -1,1 +1,1 @@
-"""One file a command: ``add_to(commands)`` declares its options, ``run(options)`` does it."""
+"""One file a command: ``configure(parser)`` declares its options, ``run(options)`` does it."""

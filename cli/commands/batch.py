@@ -14,7 +14,7 @@ from cli.arguments import UsageError, whole_number
 from cli.commands.simulate import add_run_options, check_samples
 from cli.results import DATA
 
-__all__ = ["Done", "Task", "add_to", "tasks_of", "work"]
+__all__ = ["Done", "Task", "configure", "tasks_of", "work"]
 
 EPILOG = """\
 INPUT is a drawing, a picture, a scene, a folder of them, or a file with a drawing or scene on each line.
@@ -46,13 +46,10 @@ class Done(NamedTuple):
     hint: str = ""
 
 
-def add_to(commands: argparse._SubParsersAction[Any]) -> None:
-    p = commands.add_parser(
-        "batch",
-        help="run many drawings or scenes at once",
-        description="Read and run many drawings or scenes, on all cores or on a cluster.",
-        epilog=EPILOG,
-    )
+def configure(p: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    p.description = "Read and run many drawings or scenes, on all cores or on a cluster."
+    p.epilog = EPILOG
     p.add_argument("inputs", metavar="INPUT", nargs="+", help="files and folders")
     p.add_argument(
         "-o", dest="folder", metavar="FOLDER", required=True, help="where to write; made if need be"

@@ -6,22 +6,18 @@ import argparse
 import importlib
 import sys
 from pathlib import Path
-from typing import Any
 
 from cli.arguments import UsageError
 
-__all__ = ["add_to"]
+__all__ = ["configure"]
 
 SUBJECTS = ("physics", "stress", "recognition", "pipeline")
 ROOT = Path(__file__).resolve().parents[2]  # of the source; an installed package has no benchmarks beside it
 
 
-def add_to(commands: argparse._SubParsersAction[Any]) -> None:
-    p = commands.add_parser(
-        "bench",
-        help="measure this installation",
-        description="Measure the engine, the recognizer or the whole way to a video, in the source folder.",
-    )
+def configure(p: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    p.description = "Measure the engine, the recognizer or the whole way to a video, in the source folder."
     p.add_argument("subject", choices=SUBJECTS)
     p.add_argument(
         "rest", nargs=argparse.REMAINDER, metavar="...", help="its options; -h after it lists them"

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
 
-__all__ = ["add_to", "words_of"]
+__all__ = ["configure", "words_of"]
 
 EPILOG = """\
 to have it in every new shell:
@@ -34,13 +33,10 @@ complete -o default -F _sketchsim sketchsim
 """
 
 
-def add_to(commands: argparse._SubParsersAction[Any]) -> None:
-    p = commands.add_parser(
-        "completion",
-        help="print what a shell needs to complete this command",
-        description="Print a script that completes commands and options.",
-        epilog=EPILOG,
-    )
+def configure(p: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    p.description = "Print a script that completes commands and options."
+    p.epilog = EPILOG
     p.add_argument("shell", choices=("bash", "zsh", "fish"))
     p.set_defaults(run=run)
 

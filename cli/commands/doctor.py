@@ -8,9 +8,8 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
-from typing import Any
 
-__all__ = ["add_to"]
+__all__ = ["configure"]
 
 NEEDED = ("numpy", "msgspec", "cv2", "av", "scipy", "pymunk")
 EXTRAS = {
@@ -21,12 +20,9 @@ EXTRAS = {
 }
 
 
-def add_to(commands: argparse._SubParsersAction[Any]) -> None:
-    p = commands.add_parser(
-        "doctor",
-        help="say what is installed and what works",
-        description="Say what is installed and try every part once. Exit status 1 where a part fails.",
-    )
+def configure(p: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    p.description = "Say what is installed and try every part once. Exit status 1 where a part fails."
     p.set_defaults(run=run)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from cli.arguments import number
 from cli.outputs import STDOUT, Outputs, check_outputs
@@ -12,7 +12,7 @@ from cli.outputs import STDOUT, Outputs, check_outputs
 if TYPE_CHECKING:
     from sketch.recognize import Recognition
 
-__all__ = ["add_to"]
+__all__ = ["configure"]
 
 EPILOG = """\
 examples:
@@ -22,13 +22,10 @@ examples:
 """
 
 
-def add_to(commands: argparse._SubParsersAction[Any]) -> None:
-    p = commands.add_parser(
-        "recognize",
-        help="read a drawing as a scene",
-        description="Read a drawing as a scene of bodies, anchors, pivots and gravity.",
-        epilog=EPILOG,
-    )
+def configure(p: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    p.description = "Read a drawing as a scene of bodies, anchors, pivots and gravity."
+    p.epilog = EPILOG
     p.add_argument(
         "input", metavar="INPUT", help="strokes or a picture, told by content; - is standard input"
     )

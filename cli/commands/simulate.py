@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from sim.scene import Scene
     from sim.trajectory import Trajectory
 
-__all__ = ["add_run_options", "add_to", "check_samples", "motion_of", "run_of", "until_rest"]
+__all__ = ["add_run_options", "check_samples", "configure", "motion_of", "run_of", "until_rest"]
 
 MAX_SAMPLES = 1_000_000  # of the motion; a day at 10 fps
 GRAVITY = 9.81  # [m/s²]
@@ -45,10 +45,10 @@ examples:
 """
 
 
-def add_to(commands: argparse._SubParsersAction[Any]) -> None:
-    p = commands.add_parser(
-        "simulate", help="run a drawing or a scene", description=DESCRIPTION, epilog=EPILOG
-    )
+def configure(p: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    p.description = DESCRIPTION
+    p.epilog = EPILOG
     p.add_argument(
         "inputs", metavar="INPUT", nargs="+",
         help="strokes, a picture or a scene, told by content; - is standard input",
