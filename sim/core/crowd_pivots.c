@@ -101,10 +101,7 @@ int pivots_load(Pivots *pivots, const World *world, const Mover *mover) {
 }
 
 /* An arm turned since the frame began. */
-static Vec turned_arm(Vec arm, double angle) {
-    double c = cos(angle), s = sin(angle);
-    return vec(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
-}
+static Vec turned_arm(Vec arm, double angle) { return turn(pose(vec(0, 0), angle), arm); }
 
 /* What an impulse at q does to the velocity at p, for the bodies that they share. */
 static void couple(const Pivot *p, const Pivot *q, const Mover *mover, double block[4]) {

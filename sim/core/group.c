@@ -283,7 +283,7 @@ static bool is_at_rest(Exact *e, int32_t root) {
         const double *a = &e->acceleration[3 * i];
         double reach = e->world->body[g->member[i]].reach;
         if (vlength(s->v) > 4 * e->slack.speed || fabs(s->spin) * reach > 4 * e->slack.speed) return false;
-        if (hypot(a[0], a[1]) > none || fabs(a[2]) * reach > none) return false;
+        if (vlength(vec(a[0], a[1])) > none || fabs(a[2]) * reach > none) return false;
     }
     return true;
 }

@@ -78,9 +78,9 @@ MotionBound motion_bound(const Motion *m, double from, double to) {
         return bound;
     }
     for (int k = 0; k < 3; k++) polynomial_bound(m->v[k], m->degree, (to - m->start) / m->span, &value[k], &slope[k]);
-    bound.speed = hypot(value[0], value[1]);
+    bound.speed = vlength(vec(value[0], value[1]));
     bound.spin = value[2];
-    bound.acceleration = hypot(slope[0], slope[1]) / m->span;
+    bound.acceleration = vlength(vec(slope[0], slope[1])) / m->span;
     bound.spin_acceleration = slope[2] / m->span;
     return bound;
 }

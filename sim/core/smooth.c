@@ -236,8 +236,8 @@ static void keep_if_small(System *system, const double *before, double worst) {
         const State *s = &system->state[i];
         const double *b = before + 6 * i;
         double reach = system->world->body[system->member[i]].reach, most = FARTHEST * worst;
-        small = small && hypot(s->p.x - b[0], s->p.y - b[1]) + reach * fabs(s->angle - b[2]) <= most;
-        small = small && hypot(s->v.x - b[3], s->v.y - b[4]) + reach * fabs(s->spin - b[5]) <= most;
+        small = small && vlength(vsub(s->p, vec(b[0], b[1]))) + reach * fabs(s->angle - b[2]) <= most;
+        small = small && vlength(vsub(s->v, vec(b[3], b[4]))) + reach * fabs(s->spin - b[5]) <= most;
     }
     if (!small) load(system, before);
 }
@@ -465,7 +465,7 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
         if (status != SIM_OK) return status;
         double error = step_error(s, system, step);
         if (!isfinite(error) && tries > 60) return SIM_NOT_FINITE;
-        double factor = !isfinite(error) ? 0.2 : error > 0 ? 0.9 * pow(error, -1.0 / 8) : 8;
+        double factor = !isfinite(error) ? 0.2 : error > 0 ? 0.9 / sqrt(sqrt(sqrt(error))) : 8;
         *h = step * fmin(fmax(factor, 0.2), 8);
         if (error <= 1 || step < 1e-12) break;
         if (tries == PATIENCE) s->relax = RELAX_MORE;

@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "angle.h"
+
 typedef struct Vec {
     double x, y;
 } Vec;
@@ -26,7 +28,11 @@ static inline double vlength(Vec a) { return sqrt(a.x * a.x + a.y * a.y); }
 /* a turned by a quarter: the velocity of a point at a under unit spin */
 static inline Vec vperp(Vec a) { return vec(-a.y, a.x); }
 
-static inline Pose pose(Vec p, double angle) { return (Pose){p, cos(angle), sin(angle)}; }
+static inline Pose pose(Vec p, double angle) {
+    Pose t = {.p = p};
+    angle_sincos(angle, &t.s, &t.c);
+    return t;
+}
 static inline Vec turn(Pose t, Vec a) { return vec(t.c * a.x - t.s * a.y, t.s * a.x + t.c * a.y); }
 static inline Vec unturn(Pose t, Vec a) { return vec(t.c * a.x + t.s * a.y, -t.s * a.x + t.c * a.y); }
 static inline Vec place(Pose t, Vec a) { return vadd(t.p, turn(t, a)); }

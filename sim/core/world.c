@@ -43,7 +43,7 @@ static void merge_pinned(const SimInput *input, int32_t *parent, Tie *ties, doub
             }
             const double *p = &input->joint_points[2 * ties[first].joint], *q = &input->joint_points[2 * ties[k].joint];
             int32_t low = find(parent, ties[k].low), high = find(parent, ties[k].high);
-            if (hypot(p[0] - q[0], p[1] - q[1]) > same_point && low != high) {
+            if (vlength(vec(p[0] - q[0], p[1] - q[1])) > same_point && low != high) {
                 parent[low < high ? high : low] = low < high ? low : high; /* the background's node 0 stays a root */
                 merged = true;
             }
