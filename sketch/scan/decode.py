@@ -12,6 +12,7 @@ from sketch.scan.header import Header, probe
 
 __all__ = ["decode", "is_picture"]
 
+PDF_SIDE = 2000  # [pixels] of the longer side that a PDF page is drawn with
 MAX_PIXELS = 64_000_000  # 192 MB as BGR; a phone's sharpest mode has 48 to 50 million
 
 
@@ -20,17 +21,24 @@ def is_picture(data: bytes) -> bool:
     return probe(data) is not None
 
 
-def decode(data: bytes) -> NDArray[np.uint8]:
+def decode(data: bytes, page: int = 1) -> NDArray[np.uint8]:
     """The picture in a file's bytes, as displayed upright: BGR, shape (h, w, 3).
 
-    PNG, JPEG, WebP, TIFF and BMP.  Raises InputError for anything else, for a file that ends too early and
-    for a picture of more than MAX_PIXELS, which is refused by its header.
+    PNG, JPEG, WebP, TIFF and BMP; with the extra `scan` also HEIC, and a `page` of a PDF file, from 1.  Raises
+    InputError for anything else, for a file that ends too early and for a picture of more than MAX_PIXELS, which
+    is refused by its header.
     """
     if not data:
         raise InputError("", "the file is empty")
     header = probe(data)
     if header is None:
-        raise InputError("", "not a picture", "PNG, JPEG, WebP, TIFF and BMP are read")
+        raise InputError("", "not a picture", "PNG, JPEG, WebP, TIFF, BMP, HEIC and PDF are read")
+    if header.format == "heic":
+        return _to_bgr8(_decode_heic(data))
+    if header.format == "pdf":
+        return _to_bgr8(_decode_pdf(data, page))
+    if page != 1:
+        raise InputError("", f"there is no page {page}: the picture has one")
     _check_size(header.width, header.height)
     return _to_bgr8(_decode_with_cv2(data, header))
 
@@ -62,6 +70,42 @@ def _decode_with_cv2(data: bytes, header: Header) -> NDArray[Any]:
     if header.format != "jpeg" and header.orientation > 1 and picture.shape[:2] == stored:
         picture = _upright(picture, header.orientation)
     return np.asarray(picture)
+
+
+def _decode_heic(data: bytes) -> NDArray[Any]:
+    try:
+        import pillow_heif
+    except ImportError:
+        raise _lacks_extra("HEIC pictures") from None
+    try:
+        file = pillow_heif.open_heif(data, convert_hdr_to_8bit=True)
+        _check_size(*file.size)
+        picture = np.asarray(file)  # turned upright by the library
+    except (ValueError, RuntimeError, SyntaxError, EOFError):
+        raise InputError("", "a HEIC picture that is damaged or cut short") from None
+    return picture if picture.ndim == 2 else picture[..., [2, 1, 0, *range(3, picture.shape[2])]]
+
+
+def _decode_pdf(data: bytes, page: int) -> NDArray[Any]:
+    try:
+        import pypdfium2
+    except ImportError:
+        raise _lacks_extra("PDF pages") from None
+    try:
+        document = pypdfium2.PdfDocument(data)
+    except pypdfium2.PdfiumError:
+        raise InputError("", "a PDF file that is damaged, cut short or locked by a password") from None
+    with document:
+        if not 1 <= page <= len(document):
+            raise InputError("", f"there is no page {page}: the file has {len(document)}")
+        sheet = document[page - 1]
+        longer = max(sheet.get_size())
+        picture = sheet.render(scale=PDF_SIDE / max(longer, 1.0)).to_numpy()
+        return np.array(picture)
+
+
+def _lacks_extra(what: str) -> InputError:
+    return InputError("", f"{what} need the extra 'scan'", "pip install 'sketchsim[scan]'")
 
 
 def _upright(picture: NDArray[Any], orientation: int) -> NDArray[Any]:

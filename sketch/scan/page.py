@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import pieces
 
-__all__ = ["Page", "fill_pinholes", "holes", "ink_mask", "read_page"]
+__all__ = ["Page", "fill_pinholes", "holes", "hollow_fills", "ink_mask", "read_page"]
 
 Image = NDArray[Any]  # uint8
 
@@ -18,9 +18,11 @@ REDUCED = 4  # light is looked at with this many pixels a side made one
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line
 FINGER = 0.015  # likewise, for telling the paper from what lies on it
 TABLE = 0.5  # what is not as bright as this share of the paper is not paper
+DARK_BOARD = 110  # of 255
 MARGIN = REDUCED + 2  # [pixels] along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
+FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
 PINHOLE = 1.0  # squares of the pen width: a ring around a smaller hole is a blot
 FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
 NOTABLE = 0.03  # of the picture's size: pieces smaller than this do not say how dark the ink is
@@ -47,17 +49,22 @@ def read_page(picture: Image) -> Page:
     """
     import cv2
 
-    blue, green, red = cv2.split(picture)
-    grey = cv2.min(cv2.min(blue, green), red)
+    grey = _darkest_channel(picture)
     height, width = grey.shape
     size = (max(width // REDUCED, 1), max(height // REDUCED, 1))
     small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
+    if _is_blackboard(small):
+        grey = _darkest_channel(255 - picture)
+        small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
     light = _closed(small, WIDEST_LINE)
+    paper, around = _paper(small)
+    if paper is not None:
+        # on the sheet, what is dark all over is filled: it has the light of the paper around it
+        light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
     # where light changes at an edge its side is known to a small pixel only: taken as on the dark side
     light = cv2.blur(cv2.erode(light, np.ones((3, 3), np.uint8)), (3, 3))
     light = cv2.resize(light, (width, height), interpolation=cv2.INTER_LINEAR)
     darkness = cv2.divide(cv2.subtract(light, grey), np.maximum(light, np.uint8(DIMMEST)), scale=255.0)
-    paper = _paper(small)
     if paper is not None:
         paper = cv2.resize(paper, (width, height), interpolation=cv2.INTER_NEAREST)
         darkness = cv2.min(darkness, paper)
@@ -65,6 +72,26 @@ def read_page(picture: Image) -> Page:
     for strip in (darkness[:MARGIN], darkness[-MARGIN:], darkness[:, :MARGIN], darkness[:, -MARGIN:]):
         strip[...] = 0
     return Page(darkness, _noise(darkness, paper))
+
+
+def _darkest_channel(picture: Image) -> Image:
+    """A pen of any colour is dark in one channel at least."""
+    import cv2
+
+    blue, green, red = cv2.split(picture)
+    return np.asarray(cv2.min(cv2.min(blue, green), red))
+
+
+def _is_blackboard(small: Image) -> bool:
+    """Whether most of the picture is dark, and what is narrow on it is bright."""
+    import cv2
+
+    if np.median(small) > DARK_BOARD:
+        return False
+    kernel = np.ones((5, 5), np.uint8)
+    bright = cv2.morphologyEx(small, cv2.MORPH_TOPHAT, kernel)
+    dark = cv2.morphologyEx(small, cv2.MORPH_BLACKHAT, kernel)
+    return bool(np.percentile(bright, 99.5) > 1.5 * np.percentile(dark, 99.5))
 
 
 def _closed(small: Image, width: float) -> Image:
@@ -80,8 +107,8 @@ def _closed(small: Image, width: float) -> Image:
     return np.asarray(closed[reach:-reach, reach:-reach])
 
 
-def _paper(small: Image) -> Image | None:
-    """255 on the sheet and 0 off it, or None where the sheet fills the picture.
+def _paper(small: Image) -> tuple[Image | None, NDArray[Any]]:
+    """255 on the sheet and 0 off it, or None where the sheet fills the picture; and the light on the sheet.
 
     Light changes across a sheet, but not at once: a sheet ends where brightness falls below TABLE within
     a few pixels.  Of the regions that such edges part, the one with the most light is the sheet; the light on
@@ -93,7 +120,7 @@ def _paper(small: Image) -> Image | None:
     square = np.ones((5, 5), np.uint8)
     inner = (cv2.erode(bright, square) >= TABLE * cv2.dilate(bright, square)).astype(np.uint8)
     if inner.all():
-        return None
+        return None, bright
     weight = _brightest_region(inner, bright).astype(np.float32)
     spread = 0.12 * (small.shape[0] * small.shape[1]) ** 0.5
     around = cv2.GaussianBlur(weight * bright, (0, 0), spread) / (
@@ -104,7 +131,7 @@ def _paper(small: Image) -> Image | None:
     rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)
     _, labels = cv2.connectedComponents(rest, connectivity=4)
     off = (labels == labels[0, 0]).astype(np.uint8)
-    return np.asarray(255 * (1 - cv2.dilate(off, square)[1:-1, 1:-1]), np.uint8)
+    return np.asarray(255 * (1 - cv2.dilate(off, square)[1:-1, 1:-1]), np.uint8), around
 
 
 def _brightest_region(mask: Image, bright: Image) -> NDArray[np.bool_]:
@@ -166,6 +193,18 @@ def holes(mask: Image) -> list[tuple[NDArray[np.int32], int]]:
         for way, (_, _, _, parent) in zip(ways, nesting[0], strict=True)
         if parent >= 0
     ]
+
+
+def hollow_fills(mask: Image, pen: float) -> None:
+    """Leave of filled shapes, in place, the outline that a pen `pen` pixels wide would draw."""
+    import cv2
+
+    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    core = (distance > FILL * pen).astype(np.uint8)
+    if core.any():
+        reach = 2 * round(FILL * pen) + 1
+        fills = cv2.dilate(core, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach)))
+        mask[(fills > 0) & (distance > pen)] = 0
 
 
 def fill_pinholes(mask: Image, pen: float) -> bool:

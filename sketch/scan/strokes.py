@@ -31,7 +31,7 @@ def trace_strokes(graph: Graph, pen: float) -> list[Points]:
     for junction in junctions:
         for i, j in junction.pairs:
             a, b = junction.branches[i], junction.branches[j]
-            via = _way(graph, junction, a, b)
+            via = _way(graph, junction, a, b, pen)
             links[a.end], links[b.end] = (b.end, via), (a.end, via[::-1])
     courses = follow(graph, links, inner)
     for course in courses:
@@ -40,11 +40,38 @@ def trace_strokes(graph: Graph, pen: float) -> list[Points]:
     return [_points(graph, course, branch_of, links) for course in kept]
 
 
-def _way(graph: Graph, junction: Junction, a: Branch, b: Branch) -> Points:
-    """The ink between two branches of a junction that has a long bridge; none where they cross at a point."""
+def _way(graph: Graph, junction: Junction, a: Branch, b: Branch, pen: float) -> Points:
+    """The pen's way between two branches of a junction: as they lead into each other, or along a bridge.
+
+    Where lines run into each other, thinning leads both along the middle of their ink; so a bridge is followed
+    only where a smooth way across would leave it.
+    """
+    straight = _bend_over(a, b)
     if not junction.bridges or np.hypot(*(a.centre - b.centre)) < 1e-9:
+        return straight
+    bridge, _ = _shortest(graph, graph.node(a.end), graph.node(b.end), np.inf, only=set(junction.bridges))
+    if len(straight) and len(bridge):
+        off = np.hypot(*(bridge[:, None] - straight[None]).transpose(2, 0, 1)).min(axis=1).max()
+        return straight if off < pen else bridge
+    return bridge
+
+
+def _bend_over(a: Branch, b: Branch) -> Points:
+    """A smooth way from one branch into another, a point a pixel, without its ends; none around a corner.
+
+    It is the cubic Hermite curve that has their directions at its ends.
+    """
+    gap = b.start - a.start
+    size = float(np.hypot(*gap))
+    if size < 2 or gap @ a.outward > -0.5 * size or gap @ b.outward < 0.5 * size:
         return np.empty((0, 2))
-    return _shortest(graph, graph.node(a.end), graph.node(b.end), np.inf, only=set(junction.bridges))[0]
+    t = np.linspace(0, 1, int(size) + 1)[1:-1, None]
+    return np.asarray(
+        (2 * t**3 - 3 * t**2 + 1) * a.start
+        - (t**3 - 2 * t**2 + t) * size * a.outward
+        + (3 * t**2 - 2 * t**3) * b.start
+        + (t**3 - t**2) * size * b.outward
+    )
 
 
 def _shortest(

@@ -1,0 +1,95 @@
+"""Corners where the pen turned: thinning cuts them short, by the more the sharper they are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.scan.graph import RING, Graph
+
+__all__ = ["sharpen_corners"]
+
+Points = NDArray[np.float64]
+
+CUT = 1.0  # pen widths to either side of a corner that thinning bends
+SIDE = 2.0  # pen widths of each side, beyond, that show where it leads
+SHARP = 1.0  # [rad] that a corner turns by at least
+STRAIGHT = 0.15  # pen widths that a side may be off a line
+INKED = 0.2  # pen widths that the corner must lie within the ink
+
+
+def sharpen_corners(graph: Graph, distance: NDArray[Any], pen: float) -> None:
+    """Set the corners of all edges, in place, to where their sides meet, if there is ink.
+
+    distance: each pixel's distance to the paper, shape (h, w).  pen: the width of the pen [pixels].
+    """
+    cut, side = round(CUT * pen), max(round(SIDE * pen), 3)
+    for edge in graph.edges:
+        closed = edge.ends == RING
+        points = edge.points[:-1] if closed else edge.points
+        if len(points) < 2 * (cut + side) + 3:
+            continue
+        if closed:  # begin where it bends the least all around
+            around = np.ones(2 * (cut + side) + 1)
+            turn = np.convolve(np.pad(_turns(points, cut, True), cut + side, "wrap"), around, "valid")
+            points = np.roll(points, -int(np.argmin(turn)), axis=0)
+        points = _sharpened(points, distance, pen, cut, side)
+        edge.points = np.concatenate([points, points[:1]]) if closed else points
+
+
+def _turns(points: Points, cut: int, closed: bool) -> NDArray[np.float64]:
+    """By how much a chain turns within `cut` points to either side of each point [rad]; 0 near open ends."""
+    before = points - np.roll(points, cut, axis=0)
+    after = np.roll(points, -cut, axis=0) - points
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turn = np.abs(np.arctan2(cross, (before * after).sum(axis=1)))
+    if not closed:
+        turn[:cut] = 0
+        turn[len(turn) - cut :] = 0
+    return np.asarray(turn)
+
+
+def _sharpened(points: Points, distance: NDArray[Any], pen: float, cut: int, side: int) -> Points:
+    turn = _turns(points, cut, False)
+    pieces, done = [], 0
+    at = np.flatnonzero(turn > SHARP)
+    for group in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1):
+        if not len(group):
+            continue
+        k = int(group[np.argmax(turn[group])])
+        if k - cut - side < done or k + cut + side >= len(points):
+            continue
+        corner = _meeting(points[k - cut - side : k - cut + 1], points[k + cut : k + cut + side + 1], pen)
+        if corner is None or np.hypot(*(corner - points[k])) > 2 * CUT * pen:
+            continue
+        x, y = np.round(corner).astype(int)
+        if not (0 <= y < distance.shape[0] and 0 <= x < distance.shape[1]) or distance[y, x] < INKED * pen:
+            continue
+        pieces += [points[done : k - cut], _even(points[k - cut], corner), _even(corner, points[k + cut])]
+        done = k + cut
+    return np.concatenate([*pieces, points[done:]])
+
+
+def _meeting(before: Points, after: Points, pen: float) -> Points | None:
+    """Where the lines of two sides cross; None where one is no line or they are nearly parallel."""
+    lines = []
+    for points in (before, after):
+        middle = points.mean(axis=0)
+        _, size, axes = np.linalg.svd(points - middle, full_matrices=False)
+        if size[1] > STRAIGHT * pen * len(points) ** 0.5:
+            return None
+        lines.append((middle, axes[0]))
+    (p, u), (q, v) = lines
+    sine = u[0] * v[1] - u[1] * v[0]
+    if abs(sine) < 0.2:
+        return None
+    along = ((q[0] - p[0]) * v[1] - (q[1] - p[1]) * v[0]) / sine
+    return np.asarray(p + along * u)
+
+
+def _even(a: Points, b: Points) -> Points:
+    """Points a pixel apart from a (with it) to b (without it)."""
+    steps = max(round(float(np.hypot(*(b - a)))), 1)
+    return np.asarray(a + (b - a) * (np.arange(steps) / steps)[:, None])

@@ -1,0 +1,133 @@
+"""From a picture to strokes: the page, its ink, the skeleton, the strokes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.scan.binding import thin, trace
+from sketch.scan.corners import sharpen_corners
+from sketch.scan.graph import build_graph
+from sketch.scan.page import Page, fill_pinholes, hollow_fills, ink_mask, read_page
+from sketch.scan.ridge import centre_on_ink
+from sketch.scan.rings import find_rings, take_rings
+from sketch.scan.strokes import trace_strokes
+
+__all__ = ["Traced", "trace_picture"]
+
+Points = NDArray[np.float64]
+
+WORK_PIXELS = 2_500_000  # more than this are not looked at before the pen's width is known
+LEAST_SIDE = 8  # [pixels] of a picture that can show anything
+NARROWEST_PEN = 3.0  # [pixels]: a thinner pen is thinned at twice the resolution, where there is more
+WIDEST_PEN = 6.4  # [pixels]: a wider pen is thinned at half the resolution
+SMOOTHING = 0.8  # [points]: standard deviation of the smoothing along a stroke
+NEARBY = 4  # [pixels] within which ink is compared with the darkest
+
+
+@dataclass(eq=False)
+class Traced:
+    """What was seen on a picture, stage by stage.
+
+    Attributes:
+        strokes: each shape (n, 2) [pixels of the picture].
+        scale: picture pixels to a pixel of the stages' pictures.
+        page: darkness under even light.  mask: ink 1, paper 0.  skeleton: its lines.  All None where the
+            picture is too small to show anything.
+        pen: width of the pen [pixels of the stages' pictures].
+    """
+
+    strokes: list[Points] = field(default_factory=list)
+    scale: float = 1.0
+    page: Page | None = None
+    mask: NDArray[Any] | None = None
+    skeleton: NDArray[Any] | None = None
+    pen: float = 0.0
+
+
+def trace_picture(picture: NDArray[Any]) -> Traced:
+    """Trace a BGR picture, shape (h, w, 3), uint8."""
+    scale = 1.0
+    while picture.shape[0] * picture.shape[1] > WORK_PIXELS * scale * scale:
+        scale *= 2
+    tried: set[float] = set()
+    while True:
+        seen = _see(picture, scale)
+        if not seen.pen:
+            return seen
+        tried.add(scale)
+        scale *= 2.0 if seen.pen > WIDEST_PEN else 0.5 if seen.pen < NARROWEST_PEN else 1.0
+        if scale in tried or scale < 1 or min(picture.shape[:2]) < 100 * scale:
+            break
+    seen.strokes = _strokes(seen)
+    return seen
+
+
+def _see(picture: NDArray[Any], scale: float) -> Traced:
+    """The stages up to the skeleton, at one picture pixel in `scale`; without a pen where there is no ink."""
+    import cv2
+
+    work = picture
+    if scale > 1:
+        work = cv2.resize(picture, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
+    if min(work.shape[:2]) < LEAST_SIDE:
+        return Traced()
+    page = read_page(work)
+    mask = ink_mask(page, NEARBY)
+    skeleton, count = thin(mask)
+    pen = _pen_width(mask, skeleton) if count else 0.0
+    return Traced([], scale, page, mask, skeleton, pen)
+
+
+def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any]) -> float:
+    """The width of the pen: the ink's area over its length, unless filled shapes are among it."""
+    import cv2
+
+    thickness = 2 * cv2.distanceTransform(mask, cv2.DIST_L2, 3)[skeleton > 0]
+    thin_ink, thick_ink = np.percentile(thickness, [20, 80])
+    if thick_ink > 2.5 * thin_ink:
+        return float(min(thin_ink, WIDEST_PEN))
+    return float(np.count_nonzero(mask)) / len(thickness)
+
+
+def _strokes(seen: Traced) -> list[Points]:
+    import cv2
+
+    page, mask, pen = seen.page, seen.mask, seen.pen
+    if page is None or mask is None:
+        return []
+    hollow_fills(mask, pen)
+    fill_pinholes(mask, pen)
+    seen.skeleton, count = thin(mask)
+    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    graph = build_graph(trace(seen.skeleton, count), distance, pen)
+    rings = take_rings(graph, find_rings(mask, distance, pen), pen)
+    centre_on_ink(graph, page.darkness, pen)
+    sharpen_corners(graph, distance, pen)
+    strokes = [smooth(s, SMOOTHING) for s in trace_strokes(graph, pen) + rings]
+    return [(s + 0.5) * seen.scale - 0.5 for s in strokes if len(s) > 1]
+
+
+def smooth(points: Points, sigma: float) -> Points:
+    """Points smoothed along the stroke by a Gaussian of `sigma` points; the ends of an open stroke stay."""
+    reach = int(np.ceil(3 * sigma))
+    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    kernel /= kernel.sum()
+    n = len(points)
+    if n < 4:
+        return points
+    if np.hypot(*(points[0] - points[-1])) < 1e-9:
+        index = np.arange(-reach, n - 1 + reach) % (n - 1)
+        padded = points[index]
+    else:
+        k = min(reach, n - 1)
+        before, after = 2 * points[0] - points[k:0:-1], 2 * points[-1] - points[-2 : -2 - k : -1]
+        fill = reach - k
+        padded = np.concatenate(
+            [np.repeat(before[:1], fill, 0), before, points, after, np.repeat(after[-1:], fill, 0)]
+        )
+    out = np.stack([np.convolve(padded[:, d], kernel, "valid") for d in (0, 1)], axis=1)
+    return np.concatenate([out, out[:1]]) if len(out) == n - 1 else out

@@ -1,0 +1,212 @@
+"""The same drawing on many papers: it gives the same four strokes on all of them."""
+
+from __future__ import annotations
+
+import struct
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from paper import CROSS, drawn, encoded, ink, lit, off_box, off_ring
+
+from sim.scene import InputError
+from sketch.ink import Sketch
+from sketch.scan import read_picture
+
+HEIGHT, WIDTH = 560, 720
+ACROSS, DOWN = np.meshgrid(np.linspace(0, 1, WIDTH), np.linspace(0, 1, HEIGHT))
+
+
+def assert_ring_and_box(sketch: Sketch, within: float) -> list[np.ndarray]:
+    """One closed stroke along the ring and one along the box; returns the others."""
+    strokes = [s.points for s in sketch.strokes]
+    ring = [s for s in strokes if off_ring(s).max() < within]
+    box = [s for s in strokes if off_box(s).max() < within]
+    assert len(ring) == 1
+    assert len(box) == 1
+    for outline in (ring[0], box[0]):
+        assert np.hypot(*(outline[0] - outline[-1])) < within
+    return [s for s in strokes if s is not ring[0] and s is not box[0]]
+
+
+def assert_all(sketch: Sketch, within: float = 1.5) -> None:
+    bars = assert_ring_and_box(sketch, within)
+    assert len(bars) == 2
+    for bar in CROSS:
+        ends = [min(np.hypot(*(s[[0, -1]] - end).T).min() for s in bars) for end in bar]
+        assert max(ends) < 3 * within
+
+
+def shadow_with_an_edge() -> np.ndarray:
+    return np.where(ACROSS + 0.3 * DOWN < 0.55, 0.62, 1.0)
+
+
+def ruled(step: int, squares: bool) -> np.ndarray:
+    page = np.full((HEIGHT, WIDTH, 3), 240.0)
+    page[step::step] = (225, 200, 190)
+    if squares:
+        page[:, step::step] = (225, 200, 190)
+    return page
+
+
+def coffee() -> np.ndarray:
+    page = np.full((HEIGHT, WIDTH, 3), 240, np.uint8)
+    cv2.circle(page, (400, 420), 110, (190, 212, 225), 14, cv2.LINE_AA)
+    return page.astype(float)
+
+
+def folded() -> np.ndarray:
+    return 1 - 0.12 * np.exp(-(((ACROSS - 0.42) / 0.01) ** 2)) + 0.08 * (DOWN > 0.4)
+
+
+def show_through(page: np.ndarray) -> np.ndarray:
+    return page - 25 * cv2.GaussianBlur(ink()[:, ::-1], (0, 0), 2.5)[..., None]
+
+
+PAPERS = {
+    "flat colours": drawn(ink()),
+    "noise": drawn(ink(), noise=9),
+    "uneven light": lit(drawn(ink(), noise=4), 0.45 + 0.5 * ACROSS * DOWN),
+    "shadow with an edge": lit(drawn(ink(), noise=3), shadow_with_an_edge()),
+    "lamp light": drawn(ink(), paper=(95, 175, 225), pen=(40, 35, 30), noise=3),
+    "ruled": drawn(ink(), paper=ruled(34, False), noise=3),
+    "squared": drawn(ink(), paper=ruled(28, True), pen=(140, 60, 30), noise=3),
+    "coffee": drawn(ink(), paper=coffee(), noise=3),
+    "folded": lit(drawn(ink(), noise=3), folded()),
+    "show-through": drawn(ink(), paper=show_through(np.full((HEIGHT, WIDTH, 3), 240.0)), noise=2),
+    "pencil": drawn(ink(pen=3), paper=(235, 235, 235), pen=(165, 165, 165), noise=3),
+    "ballpoint": drawn(ink(pen=2.2), pen=(150, 70, 40), noise=3),
+    "marker": drawn(ink(pen=10), pen=(40, 40, 200), noise=3),
+    "red": drawn(ink(), pen=(60, 50, 220), noise=3),
+    "green": drawn(ink(), pen=(80, 170, 60), noise=3),
+    "orange": drawn(ink(), pen=(40, 140, 250), noise=3),
+    "blackboard": drawn(ink(), paper=(52, 60, 45), pen=(225, 230, 228), noise=5),
+    "whiteboard with glare": drawn(
+        ink(pen=6),
+        paper=np.minimum(190 + 120 * np.exp(-(((ACROSS - 0.7) / 0.1) ** 2 + ((DOWN - 0.3) / 0.2) ** 2)), 255)[
+            ..., None
+        ],
+        pen=(150, 60, 30),
+        noise=3,
+    ),
+    "blurred": cv2.GaussianBlur(drawn(ink(), noise=4), (0, 0), 1.6),
+}
+
+
+@pytest.mark.parametrize("name", PAPERS)
+def test_the_drawing_is_the_same_on_every_paper(name: str) -> None:
+    # a wide pen rounds the corners that it draws
+    assert_all(
+        read_picture(encoded(PAPERS[name])), 2.2 if name in ("marker", "whiteboard with glare") else 1.5
+    )
+
+
+@pytest.mark.parametrize("quality", [30, 60, 90])
+def test_the_drawing_survives_compression(quality: int) -> None:
+    assert_all(read_picture(encoded(PAPERS["uneven light"], ".jpg", cv2.IMWRITE_JPEG_QUALITY, quality)))
+
+
+@pytest.mark.parametrize("scale", [0.6, 2, 3.5])
+def test_a_larger_picture_gives_a_larger_drawing(scale: float) -> None:
+    large = cv2.resize(PAPERS["noise"], None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
+    sketch = read_picture(encoded(large, ".jpg"))
+    assert sketch.width == large.shape[1]
+    for stroke in sketch.strokes:
+        stroke.points[:] = (stroke.points + 0.5) / scale - 0.5
+    assert_all(sketch, 2.0)
+
+
+def test_filled_shapes_are_their_outlines() -> None:
+    sketch = read_picture(encoded(drawn(ink(filled=True), noise=3)))
+    assert assert_ring_and_box(sketch, 5.0) == []
+
+
+@pytest.mark.parametrize("kind", ["grey", "16 bits", "16 bits grey", "transparent"])
+def test_kinds_of_pixels(kind: str) -> None:
+    picture: np.ndarray = PAPERS["noise"]
+    if "grey" in kind:
+        picture = picture[..., 1]
+    if "16" in kind:
+        picture = picture.astype(np.uint16) * 257
+    if kind == "transparent":
+        alpha = np.round(255 * ink()).astype(np.uint8)
+        picture = np.dstack([np.zeros((HEIGHT, WIDTH, 3), np.uint8), alpha])
+    assert_all(read_picture(encoded(picture)))
+
+
+def with_orientation(jpeg: bytes, orientation: int) -> bytes:
+    tags = struct.pack("<2sHIHHHII", b"II", 42, 8, 1, 274, 3, 1, orientation) + b"\0\0\0\0"
+    exif = b"Exif\0\0" + tags
+    return jpeg[:2] + b"\xff\xe1" + struct.pack(">H", len(exif) + 2) + exif + jpeg[2:]
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_a_picture_is_read_as_it_is_displayed(orientation: int) -> None:
+    upright = PAPERS["flat colours"]
+    stored = {
+        1: upright,
+        2: upright[:, ::-1],
+        3: upright[::-1, ::-1],
+        4: upright[::-1],
+        5: upright.swapaxes(0, 1),
+        6: upright.swapaxes(0, 1)[::-1],
+        7: upright.swapaxes(0, 1)[::-1, ::-1],
+        8: upright.swapaxes(0, 1)[:, ::-1],
+    }[orientation]
+    sketch = read_picture(with_orientation(encoded(np.ascontiguousarray(stored), ".jpg"), orientation))
+    assert (sketch.width, sketch.height) == (WIDTH, HEIGHT)
+    assert_all(sketch)
+
+
+def test_stages_are_written(tmp_path: Path) -> None:
+    read_picture(encoded(PAPERS["marker"]), stages=tmp_path / "seen")
+    names = sorted(p.name for p in (tmp_path / "seen").iterdir())
+    assert names == ["1-page.png", "2-mask.png", "3-skeleton.png", "4-strokes.png"]
+    mask = cv2.imread(str(tmp_path / "seen" / "2-mask.png"), cv2.IMREAD_GRAYSCALE)
+    assert set(np.unique(mask)) == {0, 255}
+
+
+def test_heic() -> None:
+    pillow_heif = pytest.importorskip("pillow_heif")
+    import io
+
+    picture = np.ascontiguousarray(PAPERS["flat colours"][..., ::-1])
+    file = io.BytesIO()
+    pillow_heif.from_bytes("RGB", (WIDTH, HEIGHT), picture.tobytes()).save(file, quality=90)
+    assert_all(read_picture(file.getvalue()))
+
+
+def test_pdf_pages() -> None:
+    pypdfium2 = pytest.importorskip("pypdfium2")
+    import io
+
+    document = pypdfium2.PdfDocument.new()
+    document.new_page(WIDTH, HEIGHT)
+    image = pypdfium2.PdfImage.new(document)
+    image.load_jpeg(io.BytesIO(encoded(PAPERS["flat colours"], ".jpg")))
+    image.set_matrix(pypdfium2.PdfMatrix().scale(WIDTH, HEIGHT))
+    sheet = document.new_page(WIDTH, HEIGHT)
+    sheet.insert_obj(image)
+    sheet.gen_content()
+    file = io.BytesIO()
+    document.save(file)
+    document.close()
+    data = file.getvalue()
+    assert read_picture(data).strokes == []
+    sketch = read_picture(data, page=2)
+    for stroke in sketch.strokes:
+        stroke.points[:] *= WIDTH / sketch.width
+    assert_all(sketch, 2.2)
+    with pytest.raises(InputError, match="no page 3"):
+        read_picture(data, page=3)
+
+
+@pytest.mark.parametrize(
+    ("module", "data"), [("pillow_heif", b"\0\0\0\x18ftypheic" + b"\0" * 20), ("pypdfium2", b"%PDF-1.7")]
+)
+def test_what_needs_the_extra_names_it(module: str, data: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(InputError, match="extra 'scan'"):
+        read_picture(data)
