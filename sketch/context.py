@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 ANCHORS = 15.0
 NO_BODY = 30.0  # nats that an X away from every body is unlikely: it would mean nothing
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
+TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
+LETTER = 0.15  # of the page: larger bars are no letter
 DOT = 0.012  # of the page: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
 
@@ -44,7 +46,42 @@ def with_context(candidates: list[Fitted], gains: list[float], chosen: list[int]
             gains[k] -= SLIP * bodies.slip(c, extent)
         elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
             gains[k] += ANCHORS
+    for k in _letters(candidates, gains, chosen, LETTER * size):
+        gains[k] -= TOUCHING
     return gains
+
+
+def _letters(candidates: list[Fitted], gains: list[float], chosen: list[int], largest: float) -> list[int]:
+    """Bars no larger than `largest` [pixels] that touch or cross one another, with no small circle there to join them.
+
+    A letter, an asterisk, a battery's sign are that; rods that are meant to do something are joined, or large.
+    """
+    taken = {i for k in chosen if candidates[k].kind not in ("bar", "cross") for i in candidates[k].pieces}
+    pins = [candidates[k].outline.mean(axis=0) for k in chosen if candidates[k].kind == "circle"]
+    bars = [
+        (k, c, _dense(c.outline))
+        for k, c in enumerate(candidates)
+        if c.kind == "bar" and gains[k] > 0 and taken.isdisjoint(c.pieces) and _extent(c.outline) < largest
+    ]
+    bars.sort(key=lambda t: t[2][:, 0].min())
+    found: set[int] = set()
+    for a, (k, c, dense) in enumerate(bars):
+        reach = 0.15 * _extent(c.outline)
+        for j, other, points in bars[a + 1 :]:
+            if points[:, 0].min() > dense[:, 0].max() + reach:
+                break
+            gap = np.hypot(*(dense[:, None] - points[None]).transpose(2, 0, 1))
+            if gap.min() > reach or c.pieces == other.pieces:
+                continue
+            at = dense[int(gap.min(axis=1).argmin())]
+            if not any(math.dist(pin, at) < 2 * reach for pin in pins):
+                found |= {k, j}
+    return sorted(found)
+
+
+def _dense(line: Array) -> Array:
+    t = np.linspace(0, 1, 16)[:, None, None]
+    return np.asarray((line[:-1] + t * (line[1:] - line[:-1])).reshape(-1, 2))
 
 
 def _extent(outline: Array) -> float:

@@ -20,6 +20,7 @@ BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
 HEAD = 2.0  # nats an observation to say ink freely, where it lies within an arrow's head
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
 RARE = 15.0  # nats that an open line is rarer than an outline
+RARE_ARROW = 2.0  # likewise for an arrow: there is one on a page, or none
 
 Vertex = list[float]
 
@@ -112,7 +113,7 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
     alike = (math.log(left / right) / 0.35) ** 2
     size = (math.log((left + right) / 2 / shaft / 0.45) / 0.4) ** 2
     spread = sum(((angle - 0.6) / 0.25) ** 2 for angle in fit.angles)
-    cost = 6 * PARAMETER + off + again + 0.5 * (alike + size + spread)
+    cost = RARE_ARROW + 6 * PARAMETER + off + again + 0.5 * (alike + size + spread)
     tip, left, right = fit.head.tolist()
     figure = np.array([tail, tip, left, tip, right, tip])
     return Fitted("arrow", tuple(sorted(names)), cost, np.array([tail, tip]), figure=figure)

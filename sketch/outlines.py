@@ -51,7 +51,7 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
     out = _round(fit, names, gaps, scale)
     if math.isfinite(fit.cost[sides]):
         cost = fit.cost[sides] + said[sides] + gaps
-        out.append(Fitted("polygon", names, cost, fit.vertices(sides), scale))
+        out.append(Fitted("polygon", names, cost, fit.vertices(sides), scale, rough=fit.cost[sides]))
     box = _rectangle(fit) if math.isfinite(fit.cost[4]) else None
     if box is not None:
         corners, extra = box

@@ -13,6 +13,7 @@ from sketch.kernel import Strokes, measure
 
 __all__ = ["Page", "Piece", "page_of"]
 
+DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
 Array = NDArray[np.float64]
@@ -94,11 +95,13 @@ def page_of(sketch: Sketch) -> Page:
     ends = strokes.ends.tolist()
     residuals, vertices = strokes.residual.tolist(), strokes.vertices.tolist()
     pieces: list[Piece] = []
+    spread = strokes.measure[strokes.measure[:, 0] > 0, 6]
+    dot = DOT * 3 * float(np.median(spread)) if len(spread) else 0.0
     for s, m in enumerate(strokes.measure.tolist()):
         if m[0] == 0:
             continue
         points = strokes.points[ends[s - 1] if s else 0 : ends[s]]
-        pieces.append(_piece(len(pieces), s, points, m, residuals[s], vertices[s]))
+        pieces.append(_piece(len(pieces), s, points, m, residuals[s], vertices[s], dot))
     if not pieces:
         return Page([], strokes, 0.0, np.empty((0, 4)))
     boxes = np.array([p.box for p in pieces])
@@ -113,6 +116,7 @@ def _piece(
     m: list[float],
     residual: list[float],
     vertices: list[list[list[float]]],
+    dot: float,
 ) -> Piece:
     length, x0, y0, x1, y1, gap, spread, across = m
     extent = 3 * spread
@@ -127,7 +131,7 @@ def _piece(
         gap=gap,
         extent=extent,
         scale=math.sqrt(2) * across if gap < 0.15 * length else extent / 2,
-        observations=OBSERVATIONS * length / (math.pi * extent),
+        observations=OBSERVATIONS * length / (math.pi * max(extent, dot)),
         residual=residual,
         vertices=vertices,
     )

@@ -22,6 +22,7 @@ class Reading:
             end to end (4 points), the arrow's is tail and head (2 points).
         alternatives: other kinds that the same ink was scored as, with their scores, best first.
         gain: what the reading saves against saying the ink freely [nats].
+        rough: nats that a polygon leaves to be said about where its ink is; a clean one leaves ten or so.
         forced: the kind that the caller said it is, or None.
     """
 
@@ -31,6 +32,7 @@ class Reading:
     outline: NDArray[np.float64]
     alternatives: list[tuple[str, float]] = field(default_factory=list)
     gain: float = 0.0
+    rough: float = 0.0
     forced: str | None = None
 
     @property

@@ -76,7 +76,8 @@ def recognize(
     if forced:
         candidates, gains = _with_forced(page, candidates, gains, forced)
     likely = _best(candidates, gains)
-    gains = with_context(candidates, gains, likely, page.size)
+    size = max(page.size, math.hypot(sketch.width or 0.0, sketch.height or 0.0))
+    gains = with_context(candidates, gains, likely, size)
     chosen = _one_a_place(candidates, gains, _best(candidates, gains))
     readings = _readings(page, candidates, gains, chosen)
     read = {s for r in readings for s in r.strokes}
@@ -228,5 +229,5 @@ def _readings(page: Page, candidates: list[Fitted], gains: list[float], chosen: 
         kind = KINDS.get(c.kind, c.kind)
         others = sorted(((n, w / total) for n, w in weight.items() if n != kind), key=lambda t: -t[1])
         strokes = tuple(sorted({page.pieces[i].stroke for i in c.pieces}))
-        readings.append(Reading(kind, strokes, weight[kind] / total, c.outline, others, gains[k]))
+        readings.append(Reading(kind, strokes, weight[kind] / total, c.outline, others, gains[k], c.rough))
     return sorted(readings, key=lambda r: r.strokes)

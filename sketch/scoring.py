@@ -39,6 +39,7 @@ class Fitted:
         cost: description length [nats].
         outline: [pixels], as in `sketch.reading.Reading`.
         scale: of a closed outline: the geometric mean of its half axes [pixels].
+        rough: nats to say the ink, given the outline, of which a clean one takes ten or so.
         gap: of a closed outline: what is missing of it, as a share of its ink.
         figure: of a cross or an arrow: a closed polygon along all that may be drawn of it [pixels], (n, 2).
     """
@@ -49,6 +50,7 @@ class Fitted:
     outline: Array
     scale: float = 0.0
     gap: float = 0.0
+    rough: float = 0.0
     figure: Array | None = None
 
     @property

@@ -56,6 +56,7 @@ static const double BOW = 0.0195;   /* usual bow of a straight side, as a share 
 static const double STIFFNESS[2] = {0.02, 0.6};
 static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
 static const double REFLEX = 1.2;  /* likewise one that turns inward */
+static const double INWARD = 4.0;  /* nats that a corner which turns inward is rarer */
 static const double FLATNESS = 0.096;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
 static const double WALL = 2.7; /* unless its two corners turn by more than this [rad] together: it is a wall's end */
@@ -159,7 +160,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         double fx = a[0] - z[0], fy = a[1] - z[1], gx = c[0] - b[0], gy = c[1] - b[1];
         double back = fabs(atan2(fx * dy - fy * dx, fx * dx + fy * dy) + atan2(dx * gy - dy * gx, dx * gx + dy * gy));
         double brief = short_of / SHORTNESS * fmin(fmax((WALL - back) / 0.5, 0), 1);
-        odd += 0.5 * (bent * bent + flat * flat + brief * brief);
+        odd += 0.5 * (bent * bent + flat * flat + brief * brief) + (reflex ? INWARD : 0);
     }
     *oddness = odd;
     *perimeter = around;
