@@ -16,8 +16,9 @@ typedef struct PairBound {
     double closing; /* speed of the points against each other */
 } PairBound;
 
-/* Bounds over [from, to] for two movers whose shapes reach ra and rb from their centres. */
-static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, double rb, double distance, double from,
+/* Bounds over [from, to] for two movers whose shapes reach ra and rb from their centres, and of which no two points are
+ * farther apart than `apart` at the start. */
+static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, double rb, double apart, double from,
                             double to) {
     MotionBound a = motion_bound(ma, from, to), b = motion_bound(mb, from, to);
     double relative = a.is_steady && b.is_steady ? vlength(vsub(a.steady, b.steady)) : a.acceleration + b.acceleration;
@@ -31,7 +32,7 @@ static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, doubl
     }
     PairBound bound;
     bound.closing = centres + ra * a.spin + rb * b.spin;
-    double apart = distance + ra + rb + centres * (to - from); /* |rho| at most */
+    apart += bound.closing * (to - from); /* |rho| at most */
     bound.steer_ab = points + 2 * b.spin * bound.closing + swing_b * apart;
     bound.steer_ba = points + 2 * a.spin * bound.closing + swing_a * apart;
     return bound;
@@ -110,16 +111,17 @@ static bool is_closed(const Search *s, const Feature *f) {
     return false;
 }
 
-/* Whether a closed contact is at this touch's point: corners that meet touch in more ways than one, and one holds them. */
+/* Whether a closed contact holds this touch already: at the same point, of the same two shapes, since corners that meet
+ * touch in more ways than one, or along the same normal, of shapes that lie on each other. */
 static bool is_held(const Search *s, const Feature *f, const Gap *g, const Placed *pa, const Placed *pb) {
     for (int32_t k = 0; k < s->closed_count; k++) {
         const Feature *c = s->closed[k];
-        bool same = (c->shape_a == f->shape_a && c->shape_b == f->shape_b) ||
-                    (c->shape_a == f->shape_b && c->shape_b == f->shape_a);
-        if (!same) continue;
         bool a_first = c->body_a == s->a.body;
         Gap held = feature_gap(c, a_first ? pa : pb, a_first ? pb : pa);
-        if (vlength(vsub(held.point, g->point)) <= 8 * s->slack->gap) return true;
+        if (vlength(vsub(held.point, g->point)) > 8 * s->slack->gap) continue;
+        bool same = (c->shape_a == f->shape_a && c->shape_b == f->shape_b) ||
+                    (c->shape_a == f->shape_b && c->shape_b == f->shape_a);
+        if (same || fabs(vcross(held.normal, g->normal)) < 1e-6) return true;
     }
     return false;
 }
@@ -164,9 +166,9 @@ static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, con
         double steer =
             f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
         double own = feature_step(s->slack, &g, bound, steer);
-        if (own <= 0 &&
-            (!faces(s->world, &f, &g, a_first ? pa : pb, a_first ? pb : pa, s->slack) || is_held(s, &f, &g, pa, pb)))
-            own = passing;
+        const Placed *point_of = a_first ? pa : pb, *side_of = a_first ? pb : pa;
+        if (own <= 0 && !faces(s->world, &f, &g, point_of, side_of, s->slack)) own = passing;
+        if (own < passing && is_held(s, &f, &g, pa, pb)) own = passing;
         if (g.gap < -s->slack->gap && g.margin < -s->slack->gap) own = fmax(own, passing); /* in behind, and beside */
         step = fmin(step, own);
     }
@@ -182,7 +184,8 @@ static double search_shapes(const Search *s, const Shape *sa, const Shape *sb, d
         Placed pa = placed(&state_a), pb = placed(&state_b);
         if (t >= horizon) {
             horizon = look_ahead(s->a.motion, s->b.motion, t, to);
-            bound = pair_bound(s->a.motion, ra, s->b.motion, rb, vlength(vsub(state_a.p, state_b.p)), t, horizon);
+            double apart = vlength(vsub(place(pa.at, sa->centre), place(pb.at, sb->centre))) + sa->reach + sb->reach;
+            bound = pair_bound(s->a.motion, ra, s->b.motion, rb, apart, t, horizon);
             if (bound.closing == 0) return INFINITY;
         }
         /* what passes by once mostly goes on to: longer steps, the longer it lasts */
