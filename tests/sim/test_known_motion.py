@@ -113,7 +113,7 @@ def test_sliding_off_an_edge_ends_the_contact_there() -> None:
 
 # What the engine makes of MACHINE, on every build and processor. It changes with the engine's arithmetic: when it does,
 # see that the tests above hold, then put the new one here.
-GOLDEN = "1946c4be0388575ca53b1accdb1c72c0fcc1503d170a64cda72848311880112d"
+GOLDEN = "61bb5c74c99a6d421a9025eb8009ecc54622ba78ceb3d22ffdfddc76c42d312a"
 
 
 def machine() -> Scene:
