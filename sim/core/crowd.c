@@ -114,6 +114,7 @@ static int frame(Crowd *crowd, World *world, double dt) {
     if (status != SIM_OK) return status;
     store(crowd, world);
     rest_update(crowd, world, dt);
+    rest_wake_nudged(crowd, world);
     return memory_store(&crowd->memory, crowd->contact, crowd->contact_count, crowd->mover);
 }
 

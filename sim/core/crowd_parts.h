@@ -60,6 +60,7 @@ struct Crowd {
     double *island_time;
     int32_t *ring;       /* by body: the next one that was put to rest with it */
     double *roused;      /* by body: how hard it was woken in this frame [m/s], or 0 */
+    bool *nudged;        /* by body: to be woken when the frame is over */
     bool *touched;       /* by body: has a contact, a joint, or something near */
 };
 
@@ -79,6 +80,7 @@ int rest_create(Crowd *crowd, const World *world);
 void rest_destroy(Crowd *crowd);
 bool rest_wake_joined(Crowd *crowd, World *world);
 bool rest_disturb(Crowd *crowd, World *world, int32_t body, int32_t by, bool close);
+void rest_wake_nudged(Crowd *crowd, World *world);
 void rest_update(Crowd *crowd, World *world, double dt);
 
 #endif

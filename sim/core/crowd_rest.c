@@ -9,6 +9,7 @@
 
 static const double STILL_TIME = 0.25;    /* [s] */
 static const double KNOCK = 0.1;          /* of the speed of falling by its own reach: what a woken body passes on */
+static const double NUDGE = 3;            /* times what counts as still: what wakes a neighbour */
 static const double STILL_SHARE = 1e-2;   /* of a body's reach: what it may move in that time */
 
 int rest_create(Crowd *crowd, const World *world) {
@@ -21,8 +22,9 @@ int rest_create(Crowd *crowd, const World *world) {
     crowd->ring = calloc(n, sizeof *crowd->ring);
     crowd->touched = calloc(n, sizeof *crowd->touched);
     crowd->roused = calloc(n, sizeof *crowd->roused);
+    crowd->nudged = calloc(n, sizeof *crowd->nudged);
     if (!crowd->still_position || !crowd->still_angle || !crowd->still_time || !crowd->island || !crowd->island_time ||
-        !crowd->ring || !crowd->touched || !crowd->roused)
+        !crowd->ring || !crowd->touched || !crowd->roused || !crowd->nudged)
         return SIM_OUT_OF_MEMORY;
     for (int32_t i = 0; i < world->body_count; i++) crowd->ring[i] = i;
     return SIM_OK;
@@ -37,6 +39,7 @@ void rest_destroy(Crowd *crowd) {
     free(crowd->ring);
     free(crowd->touched);
     free(crowd->roused);
+    free(crowd->nudged);
 }
 
 /* How far a body may move in STILL_TIME and be still.  Without gravity nothing presses bodies together: what drifts goes
@@ -60,16 +63,26 @@ static void wake(Crowd *crowd, World *world, int32_t body, double strength) {
 }
 
 /* A resting body that a moving one is about to meet wakes, unless that one is about to rest itself; a woken one wakes
- * those that it touches (`close`), each less hard than the one before.  Whether it woke. */
+ * those that it touches (`close`), each less hard than the one before.  What is only nudged wakes when the frame is over.
+ * Whether it woke at once. */
 bool rest_disturb(Crowd *crowd, World *world, int32_t body, int32_t by, bool close) {
     const Body *mover = &world->body[by], *rester = &world->body[body];
     if (rester->mode != MODE_REST || mover->mode != MODE_CROWD) return false;
     double speed = vlength(mover->velocity) + mover->reach * fabs(mover->spin);
-    bool moves = speed * STILL_TIME > still_distance(world, mover, crowd->tolerance);
-    bool passes_on = close && crowd->roused[by] > KNOCK * sqrt(vlength(world->gravity) * mover->reach);
-    if (!moves && !passes_on) return false;
-    wake(crowd, world, body, larger(speed, crowd->roused[by]) / 2);
-    return true;
+    double strength = larger(speed, close ? crowd->roused[by] : 0);
+    if (strength > KNOCK * sqrt(vlength(world->gravity) * mover->reach)) {
+        wake(crowd, world, body, strength / 2);
+        return true;
+    }
+    if (speed * STILL_TIME > NUDGE * still_distance(world, mover, crowd->tolerance)) crowd->nudged[body] = true;
+    return false;
+}
+
+void rest_wake_nudged(Crowd *crowd, World *world) {
+    for (int32_t i = 0; i < world->body_count; i++) {
+        if (crowd->nudged[i] && world->body[i].mode == MODE_REST) wake(crowd, world, i, 0);
+        crowd->nudged[i] = false;
+    }
 }
 
 /* What hangs on a moving body moves. Whether anything woke. */

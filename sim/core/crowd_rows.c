@@ -93,7 +93,7 @@ static inline void solve_rolling(const Contact *c, Mover *a, Mover *b) {
  * rows by its four cases (Catto's Box2D). wanted: the normal velocities. Returns the larger change relative to its mass. */
 static inline double solve_pair(Contact *c, Mover *a, Mover *b) {
     Point *p = &c->point[0], *q = &c->point[1];
-    double k11 = 1 / p->mass_n, k22 = 1 / q->mass_n, k12 = c->coupling;
+    double k11 = p->mobility, k22 = q->mobility, k12 = c->coupling;
     double vp = speed(a, b, c->normal, p->spin_na, p->spin_nb) - p->limit;
     double vq = speed(a, b, c->normal, q->spin_na, q->spin_nb) - q->limit;
     /* what the velocities would be without the impulses so far */
@@ -128,7 +128,7 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
             for (int32_t k = 0; k < c->count; k++) {
                 Point *p = &c->point[k];
                 double impulse = solve_normal(c, p, a, b, p->limit);
-                change = larger(change, fabs(impulse) / p->mass_n);
+                change = larger(change, fabs(impulse) * p->mobility);
             }
         }
         Vec t = vperp(c->normal);
@@ -163,8 +163,8 @@ void contacts_part(Contact *contact, int32_t count, Mover *mover) {
             const Point *p = &c->point[0], *q = &c->point[1];
             double dp = overlap(c, p, a, b), dq = overlap(c, q, a, b);
             if (dp <= 0 && dq <= 0) continue;
-            double x = (dp / q->mass_n - c->coupling * dq) * c->pair_mass;
-            double y = (dq / p->mass_n - c->coupling * dp) * c->pair_mass;
+            double x = (dp * q->mobility - c->coupling * dq) * c->pair_mass;
+            double y = (dq * p->mobility - c->coupling * dp) * c->pair_mass;
             if (x < 0 || y < 0) {
                 x = dp > dq ? dp * p->mass_n : 0;
                 y = dp > dq ? 0 : dq * q->mass_n;

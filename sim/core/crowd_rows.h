@@ -22,6 +22,7 @@ typedef struct Point {
     double spin_ta, spin_tb;     /* r x t */
     double along_na, along_nb;   /* r . n, for the second order of turning */
     double mass_n, mass_t;       /* effective masses */
+    double mobility;             /* 1 / mass_n */
     double impulse_n, impulse_t; /* of one substep, kept for warm starting */
     double limit;                /* the fastest that the two may approach in the substep, less than 0: at a gap, not to pass it */
     double approach;             /* normal velocity before the touch, for restitution; 0 when none is due */

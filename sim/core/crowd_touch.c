@@ -191,7 +191,8 @@ static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, c
     p->spin_tb = vcross(rb, t);
     p->along_na = vdot(ra, n) - radius_a; /* a disk touches with another point of it as it turns: its centre counts */
     p->along_nb = vdot(rb, n) + radius_b;
-    p->mass_n = 1 / (m + c->inverse_moment_a * p->spin_na * p->spin_na + c->inverse_moment_b * p->spin_nb * p->spin_nb);
+    p->mobility = m + c->inverse_moment_a * p->spin_na * p->spin_na + c->inverse_moment_b * p->spin_nb * p->spin_nb;
+    p->mass_n = 1 / p->mobility;
     p->mass_t = 1 / (m + c->inverse_moment_a * p->spin_ta * p->spin_ta + c->inverse_moment_b * p->spin_tb * p->spin_tb);
     /* what a mover has done in the frame so far is in the formula of crowd_rows.c, and taken off here */
     p->separation = found->separation - vdot(vsub(b->moved, a->moved), n) - b->turned * p->spin_nb +
@@ -230,7 +231,7 @@ static void set_points(Crowd *crowd, const World *world, Contact *c, const Manif
     c->pair_mass = 0;
     if (c->count < 2) return;
     const Point *p = &c->point[0], *q = &c->point[1];
-    double k11 = 1 / p->mass_n, k22 = 1 / q->mass_n;
+    double k11 = p->mobility, k22 = q->mobility;
     c->coupling = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * p->spin_na * q->spin_na +
                   c->inverse_moment_b * p->spin_nb * q->spin_nb;
     double determinant = k11 * k22 - c->coupling * c->coupling;
