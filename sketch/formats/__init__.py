@@ -29,7 +29,7 @@ _PICTURES = [
 
 
 def kind_of(data: bytes) -> str:
-    """What some input is, by its content: "strokes", "scene", "picture", or "unknown" (text that is neither).
+    """What some input is, by its content: "strokes", "scene", "picture", "quickdraw", "excalidraw" or "unknown".
 
     JSON is told by its keys without parsing it: a scene has "bodies", a sketch "strokes"; a file that has
     both says what it is in "format".
@@ -43,6 +43,10 @@ def kind_of(data: bytes) -> str:
         return "scene"
     if b"sketchsim-strokes" in head:
         return "strokes"
+    if b'"excalidraw"' in head and b'"elements"' in data:
+        return "excalidraw"
+    if b'"drawing"' in head and b'"strokes"' not in head:
+        return "quickdraw"
     bodies, strokes = data.find(b'"bodies"'), data.find(b'"strokes"')
     if bodies >= 0 and (strokes < 0 or bodies < strokes):
         return "scene"
@@ -74,4 +78,12 @@ def load_sketch(source: str | os.PathLike[str] | bytes) -> Sketch:
         return read_picture(data)
     if kind == "scene":
         raise InputError("", "this is a scene, not a sketch", "a scene needs no recognition: simulate it")
+    if kind == "quickdraw":
+        from sketch.formats import quickdraw
+
+        return quickdraw.read(data)
+    if kind == "excalidraw":
+        from sketch.formats import excalidraw
+
+        return excalidraw.read(data)
     return strokes.read(data)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sim.scene import InputError, parse_json
 from sketch.ink import Sketch, Stroke
 
-__all__ = ["read"]
+__all__ = ["from_objects", "read"]
 
 MAX_BYTES = 24 << 20
 MAX_POINTS = 1_000_000  # a page of 200 strokes of 500 points has a tenth of that
@@ -34,7 +34,11 @@ def read(data: bytes) -> Sketch:
     # Counted before any object is built: ten million points are refused in milliseconds.
     if len(data) <= MAX_BYTES and data.count(b",") > 4 * MAX_POINTS:
         raise InputError("strokes", f"more than {MAX_POINTS} points", "resample the strokes")
-    d = parse_json(data, MAX_BYTES)
+    return from_objects(parse_json(data, MAX_BYTES))
+
+
+def from_objects(d: Any) -> Sketch:
+    """A sketch from stroke JSON's objects. Raises InputError with the path to the bad element."""
     if isinstance(d, list):
         d = {"strokes": d}
     if not isinstance(d, dict):
