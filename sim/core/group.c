@@ -341,13 +341,32 @@ static bool all_still(const Exact *e) {
     return true;
 }
 
+/* Whether a member is so deep in something that its contact could not be told from lying behind the side. */
+static bool any_too_deep(Exact *e) {
+    System *g = &e->group;
+    for (int32_t i = 0; i < g->count; i++) set_body_state(&e->world->body[g->member[i]], &g->state[i]);
+    for (int32_t i = 0; i < g->count; i++) {
+        int32_t member = g->member[i];
+        if (too_deep(e->world, member, 0, &e->slack)) return true;
+        for (int32_t j = 1; j < e->world->body_count; j++) {
+            const Body *a = &e->world->body[member], *b = &e->world->body[j];
+            bool is_where_it_says = g->place_of[j] > i || (g->place_of[j] < 0 && b->mode == MODE_REST);
+            double reach = a->reach + b->reach;
+            Vec apart = vsub(a->position, b->position);
+            if (is_where_it_says && vdot(apart, apart) < reach * reach && too_deep(e->world, member, j, &e->slack))
+                return true;
+        }
+    }
+    return false;
+}
+
 int group_reform(Exact *e, double time) {
     System *g = &e->group;
     e->world->profile.events += 1;
     int status = change_note_before(e);
     for (int32_t i = 0; i < g->count; i++)
         if (e->track[g->member[i]].island >= 0) island_dissolve(e, e->track[g->member[i]].island);
-    bool crowded = e->world->body[g->member[0]].mode == MODE_CROWD;
+    bool crowded = e->world->body[g->member[0]].mode == MODE_CROWD || any_too_deep(e);
     if (status == SIM_OK && !crowded) status = find_contacts(e);
     if (status != SIM_OK) return status;
     if (crowded || g->contact_count > (all_still(e) ? MOST_CONTACTS_REST : MOST_CONTACTS)) {
