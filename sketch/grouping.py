@@ -19,6 +19,8 @@ __all__ = ["arrow_groups", "closing_chains", "crosses"]
 
 MOST_PARTS = 6  # of one outline: people draw a box in one to five strokes
 LOOSE = 0.3  # gaps of a chain, as a share of its ink, overshoots counted as gaps
+MOST_STEPS = 400  # from one piece, of chains that may close
+MOST_CHAINS = 6  # a piece on the page that are fitted, the tightest first
 CHOICES = 6  # ends that a chain may go on to
 HEADS = 4  # strokes near a shaft's end that are tried as its head
 
@@ -33,7 +35,13 @@ def closing_chains(page: Page, complete: Set[int]) -> list[Chain]:
     near = _near_ends(loose)
     best: dict[tuple[int, ...], tuple[float, Chain]] = {(i,): (0.0, [(i, False)]) for i in sorted(complete)}
 
+    steps = 0  # from one piece: in shading every end has many others near it
+
     def extend(chain: Chain, gaps: float, ink: float) -> None:
+        nonlocal steps
+        steps += 1
+        if steps > MOST_STEPS:
+            return
         first = chain[0][0]
         last, reverse = chain[-1]
         out = 0 if reverse else 1
@@ -51,8 +59,10 @@ def closing_chains(page: Page, complete: Set[int]) -> list[Chain]:
                     extend([*chain, (j, e == 1)], gaps + d, longer)
 
     for p in loose:
+        steps = 0
         extend([(p.index, False)], 0.0, p.length)
-    return [chain for _, chain in best.values()]
+    tightest = sorted(best.items(), key=lambda t: t[1][0] / sum(pieces[i].length for i in t[0]))
+    return [chain for _, (_, chain) in tightest[: MOST_CHAINS * len(pieces)]]
 
 
 def _near_ends(loose: list[Piece]) -> dict[tuple[int, int], list[tuple[float, int, int]]]:

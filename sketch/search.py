@@ -1,10 +1,15 @@
-"""The best joint explanation: disjoint groups of ink with the greatest total gain, found exactly."""
+"""The best joint explanation: disjoint groups of ink with the greatest total gain, found exactly but in shading."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 __all__ = ["best_packing"]
+
+MOST_PIECES = 400  # in one cluster: beyond, it is shading, and the best groups are taken one after another
+MOST_LOOKS = (
+    20_000  # in one cluster: shading and grids, where no set is right, end with the best found so far
+)
 
 
 def best_packing(groups: Sequence[frozenset[int]], gains: Sequence[float]) -> list[int]:
@@ -40,8 +45,20 @@ def _clusters(groups: Sequence[frozenset[int]]) -> list[list[int]]:
     return list(by_root.values())
 
 
+def _greedy(cluster: list[int], groups: Sequence[frozenset[int]], gains: Sequence[float]) -> list[int]:
+    taken: set[int] = set()
+    out = []
+    for g in sorted(cluster, key=lambda g: -gains[g]):
+        if taken.isdisjoint(groups[g]):
+            taken |= groups[g]
+            out.append(g)
+    return out
+
+
 def _solve(cluster: list[int], groups: Sequence[frozenset[int]], gains: Sequence[float]) -> list[int]:
     bit = {i: 1 << k for k, i in enumerate(sorted({i for g in cluster for i in groups[g]}))}
+    if len(bit) > MOST_PIECES:
+        return _greedy(cluster, groups, gains)
     every = (1 << len(bit)) - 1
     share = dict.fromkeys(bit, 0.0)  # the most that a piece can bring: a group's gain split evenly
     for g in cluster:
@@ -58,8 +75,13 @@ def _solve(cluster: list[int], groups: Sequence[frozenset[int]], gains: Sequence
     reached: dict[int, float] = {}  # by the pieces that are settled, the gain that they were settled with
     picked: list[int] = []
 
+    looked = 0
+
     def branch(settled: int, gain: float, hope: float) -> None:
-        nonlocal best, best_set
+        nonlocal best, best_set, looked
+        looked += 1
+        if looked > MOST_LOOKS:
+            return
         if gain > best:
             best, best_set = gain, list(picked)
         if gain + hope <= best or reached.get(settled, -1.0) >= gain:

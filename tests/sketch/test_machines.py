@@ -233,6 +233,27 @@ def test_any_ink_gives_a_scene(seed: int) -> None:
     assert read_strokes <= set(range(len(strokes)))
 
 
+def hatching(count: int) -> list[np.ndarray]:
+    rng = np.random.default_rng(0)
+    return [np.array([[8.0 * i, 0], [8.0 * i + 60, 200]]) + rng.normal(0, 1, (2, 2)) for i in range(count)]
+
+
+def squares(count: int) -> list[np.ndarray]:
+    long = 20.0 * count
+    rows = [np.array([[0, 20.0 * k], [long, 20.0 * k]]) for k in range(count + 1)]
+    return rows + [row[:, ::-1].copy() for row in rows]
+
+
+@pytest.mark.parametrize(
+    "ink", [hatching(60), squares(12), hatching(450)], ids=["hatching", "squares", "much"]
+)
+def test_shading_takes_no_time(ink: list[np.ndarray]) -> None:
+    """Ink in which everything is near everything: the number of groups is bounded, whatever is read."""
+    start = time.process_time()
+    recognize(Sketch([Stroke(s) for s in ink])).scene.check()
+    assert time.process_time() - start < 10
+
+
 def test_time_grows_with_the_page_and_no_faster() -> None:
     """Machines side by side: eight times as many take at most about eight times as long."""
     rng = np.random.default_rng(0)
