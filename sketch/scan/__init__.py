@@ -31,5 +31,7 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
 
         write_stages(stages, picture, traced)
     notes = [] if traced.strokes else ["no ink was found on the picture"]
+    if traced.specks:
+        notes.append(f"left out {traced.specks} specks on the paper")
     strokes = [Stroke(points) for points in traced.strokes]
     return Sketch(strokes, float(width), float(height), None, picture, notes)

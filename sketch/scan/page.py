@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import pieces
 
-__all__ = ["Page", "fill_pinholes", "holes", "hollow_fills", "ink_mask", "read_page"]
+__all__ = ["Page", "drop_specks", "fill_pinholes", "holes", "hollow_fills", "ink_mask", "read_page"]
 
 Image = NDArray[Any]  # uint8
 
 REDUCED = 4  # light is looked at with this many pixels a side made one
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line
+FINGER_MARK = 0.08  # likewise, the largest shadow or nail that is seen of a finger on the sheet
 FINGER = 0.015  # likewise, for telling the paper from what lies on it
 TABLE = 0.5  # what is not as bright as this share of the paper is not paper
 DARK_BOARD = 110  # of 255
@@ -23,6 +24,7 @@ MARGIN = REDUCED + 2  # [pixels] along the edges of the picture that are not loo
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
+SPECK = 3.5  # pen widths
 PINHOLE = 1.0  # squares of the pen width: a ring around a smaller hole is a blot
 FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
 NOTABLE = 0.03  # of the picture's size: pieces smaller than this do not say how dark the ink is
@@ -35,10 +37,12 @@ class Page:
     Attributes:
         darkness: 0 is bare paper, 255 is black, shape (h, w); 0 off the paper.
         noise: standard deviation of the bare paper's darkness.
+        edge: not 0 off the sheet and near its edge, shape (h, w), or None where the sheet fills the picture.
     """
 
     darkness: Image
     noise: float
+    edge: Image | None = None
 
 
 def read_page(picture: Image) -> Page:
@@ -56,7 +60,7 @@ def read_page(picture: Image) -> Page:
     if _is_blackboard(small):
         grey = _darkest_channel(255 - picture)
         small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
-    light = _closed(small, WIDEST_LINE)
+    light, edge = _closed(small, WIDEST_LINE), None
     paper, around = _paper(small)
     if paper is not None:
         # on the sheet, what is dark all over is filled: it has the light of the paper around it
@@ -66,12 +70,14 @@ def read_page(picture: Image) -> Page:
     light = cv2.resize(light, (width, height), interpolation=cv2.INTER_LINEAR)
     darkness = cv2.divide(cv2.subtract(light, grey), np.maximum(light, np.uint8(DIMMEST)), scale=255.0)
     if paper is not None:
+        edge = cv2.dilate(255 - paper, np.ones((5, 5), np.uint8))
+        edge = cv2.resize(edge, (width, height), interpolation=cv2.INTER_NEAREST)
         paper = cv2.resize(paper, (width, height), interpolation=cv2.INTER_NEAREST)
         darkness = cv2.min(darkness, paper)
     # a sheet may end so near the picture's edge that no table is seen beyond
     for strip in (darkness[:MARGIN], darkness[-MARGIN:], darkness[:, :MARGIN], darkness[:, -MARGIN:]):
         strip[...] = 0
-    return Page(darkness, _noise(darkness, paper))
+    return Page(darkness, _noise(darkness, paper), edge)
 
 
 def _darkest_channel(picture: Image) -> Image:
@@ -157,27 +163,70 @@ def ink_mask(page: Page, reach: int) -> Image:
     """The pixels that are ink, 1, shape (h, w).
 
     A pixel of ink is at least half as dark as the darkest within `reach` pixels, which finds a line's edges
-    however dark it is; of the pieces that those make, the ones count that are about as dark as the darkest.
+    however dark it is, or nearly as dark as full ink.  Of the pieces that those make, the ones count that are about
+    as dark as full ink; what is at the edge of the sheet and no larger than a finger is what holds it.
     """
     import cv2
 
-    kernel = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
-    half = cv2.dilate(page.darkness, kernel) // 2
-    floor = np.uint8(min(max(LEAST_CONTRAST, 5 * page.noise), 254))
-    mask = np.asarray(page.darkness > np.maximum(half, floor), np.uint8)
+    darkness = page.darkness
+    half = cv2.dilate(darkness, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)) // 2
+    floor = min(max(LEAST_CONTRAST, 5 * page.noise), 254)
+    mask = np.asarray(darkness > np.maximum(half, np.uint8(floor)), np.uint8)
+    size = (mask.shape[0] * mask.shape[1]) ** 0.5
+    found = _measure(mask, page)
+    notable = (found.span >= NOTABLE * size) & ~found.at_edge
+    if not notable.any():
+        notable = found.span >= 0
+    if not len(notable):
+        return np.zeros_like(mask)
+    full = found.strength[notable].max()
+    mask |= darkness > max(floor, 0.75 * full)
+    found = _measure(mask, page)
+    held = found.at_edge & (found.span < FINGER_MARK * size)
+    keep = (found.strength >= FAINT * full) & (found.span >= 2 * reach) & ~held
+    return found.without(mask, ~keep)
+
+
+def drop_specks(mask: Image, pen: float) -> int:
+    """Drop the pieces, in place, that are too small for anything drawn; returns how many there were."""
+    found = _measure(mask, None)
+    specks = found.span < SPECK * pen
+    mask[...] = found.without(mask, specks)
+    return int(np.count_nonzero(specks))
+
+
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """The connected pieces of a mask, with the mean darkness, diagonal [pixels] and place of each."""
+
+    pixels: NDArray[np.int32]
+    area: NDArray[np.int64]
+    strength: NDArray[np.float64]
+    span: NDArray[np.float64]
+    at_edge: NDArray[np.bool_]
+
+    def without(self, mask: Image, dropped: NDArray[np.bool_]) -> Image:
+        mask = mask.copy()
+        mask[[0, -1]] = 0
+        mask[:, [0, -1]] = 0
+        mask.ravel()[self.pixels[np.repeat(dropped, self.area)]] = 0
+        return mask
+
+
+def _measure(mask: Image, page: Page | None) -> _Pieces:
     pixels, start = pieces(mask)
     if not len(start):
-        return np.zeros_like(mask)
+        nothing = np.zeros(0)
+        return _Pieces(pixels[:0], nothing.astype(np.int64), nothing, nothing, nothing.astype(bool))
     y, x = np.divmod(pixels, mask.shape[1])
     area = np.diff(np.append(start, len(pixels)))
-    strength = np.add.reduceat(page.darkness.ravel()[pixels].astype(np.float64), start) / area
     span = np.hypot(*(np.maximum.reduceat(v, start) - np.minimum.reduceat(v, start) for v in (x, y)))
-    notable = span >= NOTABLE * (mask.shape[0] * mask.shape[1]) ** 0.5
-    full = strength[notable].max() if notable.any() else strength.max()
-    keep = (strength >= FAINT * full) & (span >= 2 * reach)
-    kept = np.zeros_like(mask)
-    kept.ravel()[pixels[np.repeat(keep, area)]] = 1
-    return kept
+    strength, at_edge = np.zeros(len(start)), np.zeros(len(start), bool)
+    if page is not None:
+        strength = np.add.reduceat(page.darkness.ravel()[pixels].astype(np.float64), start) / area
+        if page.edge is not None:
+            at_edge = np.maximum.reduceat(page.edge.ravel()[pixels], start) > 0
+    return _Pieces(pixels, area, strength, span, at_edge)
 
 
 def holes(mask: Image) -> list[tuple[NDArray[np.int32], int]]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sketch.scan.binding import thin, trace
 from sketch.scan.corners import sharpen_corners
 from sketch.scan.graph import build_graph
-from sketch.scan.page import Page, fill_pinholes, hollow_fills, ink_mask, read_page
+from sketch.scan.page import Page, drop_specks, fill_pinholes, hollow_fills, ink_mask, read_page
 from sketch.scan.ridge import centre_on_ink
 from sketch.scan.rings import find_rings, take_rings
 from sketch.scan.strokes import trace_strokes
@@ -38,6 +38,7 @@ class Traced:
         page: darkness under even light.  mask: ink 1, paper 0.  skeleton: its lines.  All None where the
             picture is too small to show anything.
         pen: width of the pen [pixels of the stages' pictures].
+        specks: how many pieces were too small to be anything.
     """
 
     strokes: list[Points] = field(default_factory=list)
@@ -46,6 +47,7 @@ class Traced:
     mask: NDArray[Any] | None = None
     skeleton: NDArray[Any] | None = None
     pen: float = 0.0
+    specks: int = 0
 
 
 def trace_picture(picture: NDArray[Any]) -> Traced:
@@ -99,6 +101,7 @@ def _strokes(seen: Traced) -> list[Points]:
     page, mask, pen = seen.page, seen.mask, seen.pen
     if page is None or mask is None:
         return []
+    seen.specks = drop_specks(mask, pen)
     hollow_fills(mask, pen)
     fill_pinholes(mask, pen)
     seen.skeleton, count = thin(mask)

@@ -210,3 +210,16 @@ def test_what_needs_the_extra_names_it(module: str, data: bytes, monkeypatch: py
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(InputError, match="extra 'scan'"):
         read_picture(data)
+
+
+def test_fingers_that_hold_the_sheet_and_specks_are_no_ink() -> None:
+    picture = cv2.copyMakeBorder(PAPERS["noise"], 40, 40, 40, 40, cv2.BORDER_CONSTANT, value=(40, 45, 50))
+    for x in (420, 480):
+        cv2.ellipse(picture, (x, 30), (22, 50), 0, 0, 360, (70, 95, 150), cv2.FILLED, cv2.LINE_AA)
+    for x, y in ((650, 500), (90, 480), (400, 200)):
+        cv2.circle(picture, (x, y), 3, (60, 60, 60), cv2.FILLED, cv2.LINE_AA)
+    sketch = read_picture(encoded(picture))
+    for stroke in sketch.strokes:
+        stroke.points[:] -= 40
+    assert_all(sketch)
+    assert sketch.notes == ["left out 3 specks on the paper"]
