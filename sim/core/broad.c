@@ -61,26 +61,31 @@ static void sort(Sweep *sweep, const Box *box, const bool *moving, bool in_y) {
     }
 }
 
+static int add_pair(Sweep *sweep, int32_t i, int32_t j) {
+    if (sweep->pair_count == sweep->pair_capacity) {
+        int32_t capacity = 2 * sweep->pair_capacity;
+        Pair *more = realloc(sweep->pair, (size_t)capacity * sizeof *more);
+        if (!more) return SIM_OUT_OF_MEMORY;
+        sweep->pair = more;
+        sweep->pair_capacity = capacity;
+    }
+    sweep->pair[sweep->pair_count++] = i < j ? (Pair){i, j} : (Pair){j, i};
+    return SIM_OK;
+}
+
 int sweep_pairs(Sweep *sweep, const Box *box, const bool *moving) {
     bool in_y = spread_in_y(sweep, box, moving);
     sort(sweep, box, moving, in_y);
+    const double *lows = sweep->low, *lows_across = sweep->across_low, *highs_across = sweep->across_high;
+    const bool *moves = sweep->moving;
+    int32_t count = sweep->count;
     sweep->pair_count = 0;
-    for (int32_t k = 0; k < sweep->count; k++) {
-        int32_t i = sweep->order[k];
-        double high = sweep->high[k], across_low = sweep->across_low[k], across_high = sweep->across_high[k];
-        bool moves = sweep->moving[k];
-        for (int32_t l = k + 1; l < sweep->count && sweep->low[l] <= high; l++) {
-            if (sweep->across_low[l] > across_high || sweep->across_high[l] < across_low) continue;
-            if (!moves && !sweep->moving[l]) continue;
-            int32_t j = sweep->order[l];
-            if (sweep->pair_count == sweep->pair_capacity) {
-                int32_t capacity = 2 * sweep->pair_capacity;
-                Pair *more = realloc(sweep->pair, (size_t)capacity * sizeof *more);
-                if (!more) return SIM_OUT_OF_MEMORY;
-                sweep->pair = more;
-                sweep->pair_capacity = capacity;
-            }
-            sweep->pair[sweep->pair_count++] = i < j ? (Pair){i, j} : (Pair){j, i};
+    for (int32_t k = 0; k < count; k++) {
+        double high = sweep->high[k], low_across = lows_across[k], high_across = highs_across[k];
+        bool still = !moves[k];
+        for (int32_t l = k + 1; l < count && lows[l] <= high; l++) {
+            if (lows_across[l] > high_across || highs_across[l] < low_across || (still && !moves[l])) continue;
+            if (add_pair(sweep, sweep->order[k], sweep->order[l]) != SIM_OK) return SIM_OUT_OF_MEMORY;
         }
     }
     return SIM_OK;

@@ -10,15 +10,34 @@
 
 static const double RATE = 0.4; /* share of an overlap that a pass drives out */
 
-static inline void push(const Contact *c, Mover *a, Mover *b, Vec direction, double spin_a, double spin_b, double impulse) {
-    a->velocity = vmad(a->velocity, -impulse * c->inverse_mass_a, direction);
-    a->spin -= impulse * c->inverse_moment_a * spin_a;
-    b->velocity = vmad(b->velocity, impulse * c->inverse_mass_b, direction);
-    b->spin += impulse * c->inverse_moment_b * spin_b;
+/* A contact's two bodies while its rows are solved, held in registers: through pointers every store might change the rest. */
+typedef struct Meeting {
+    Vec velocity_a, velocity_b;
+    double spin_a, spin_b;
+    double inverse_mass_a, inverse_moment_a, inverse_mass_b, inverse_moment_b;
+} Meeting;
+
+static inline Meeting meet(const Contact *c, const Mover *a, const Mover *b) {
+    return (Meeting){a->velocity,       b->velocity,         a->spin,           b->spin,
+                     c->inverse_mass_a, c->inverse_moment_a, c->inverse_mass_b, c->inverse_moment_b};
 }
 
-static inline double speed(const Mover *a, const Mover *b, Vec direction, double spin_a, double spin_b) {
-    return vdot(direction, vsub(b->velocity, a->velocity)) + b->spin * spin_b - a->spin * spin_a;
+static inline void leave(const Meeting *m, Mover *a, Mover *b) {
+    a->velocity = m->velocity_a;
+    a->spin = m->spin_a;
+    b->velocity = m->velocity_b;
+    b->spin = m->spin_b;
+}
+
+static inline void push(Meeting *m, Vec direction, double lever_a, double lever_b, double impulse) {
+    m->velocity_a = vmad(m->velocity_a, -impulse * m->inverse_mass_a, direction);
+    m->spin_a -= impulse * m->inverse_moment_a * lever_a;
+    m->velocity_b = vmad(m->velocity_b, impulse * m->inverse_mass_b, direction);
+    m->spin_b += impulse * m->inverse_moment_b * lever_b;
+}
+
+static inline double speed(const Meeting *m, Vec direction, double lever_a, double lever_b) {
+    return vdot(direction, vsub(m->velocity_b, m->velocity_a)) + m->spin_b * lever_b - m->spin_a * lever_a;
 }
 
 /* How far apart the point's two surfaces are now; turning counts to second order. */
@@ -33,14 +52,16 @@ void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double d
         Contact *c = &contact[i];
         Mover *a = &mover[c->a], *b = &mover[c->b];
         Vec n = c->normal, t = vperp(n);
+        Meeting m = meet(c, a, b);
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
             double gap = separation(c, p, a, b);
             p->limit = gap > 0 ? -gap * inverse_dt : 0;
             if (p->impulse_n == 0) continue;
-            push(c, a, b, n, p->spin_na, p->spin_nb, p->impulse_n);
-            push(c, a, b, t, p->spin_ta, p->spin_tb, p->impulse_t);
+            push(&m, n, p->spin_na, p->spin_nb, p->impulse_n);
+            push(&m, t, p->spin_ta, p->spin_tb, p->impulse_t);
         }
+        leave(&m, a, b);
     }
 }
 
@@ -48,54 +69,55 @@ void contacts_measure(Contact *contact, int32_t count, const Mover *mover, doubl
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         if (c->elasticity <= 0) continue;
+        Meeting m = meet(c, &mover[c->a], &mover[c->b]);
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
             p->approach = 0;
             if (p->impulse_n > 0) continue;
-            double v = speed(&mover[c->a], &mover[c->b], c->normal, p->spin_na, p->spin_nb);
+            double v = speed(&m, c->normal, p->spin_na, p->spin_nb);
             if (v < -threshold) p->approach = v;
         }
     }
 }
 
-static inline void solve_friction(Contact *c, Point *p, Mover *a, Mover *b, Vec t) {
+static inline void solve_friction(const Contact *c, Point *p, Meeting *m, Vec t) {
     if (p->impulse_n == 0 && p->impulse_t == 0) return;
-    double v = speed(a, b, t, p->spin_ta, p->spin_tb), most = c->friction * p->impulse_n;
+    double v = speed(m, t, p->spin_ta, p->spin_tb), most = c->friction * p->impulse_n;
     double sum = p->impulse_t - p->mass_t * v;
     sum = sum > most ? most : sum < -most ? -most : sum;
     double impulse = sum - p->impulse_t;
     p->impulse_t = sum;
-    push(c, a, b, t, p->spin_ta, p->spin_tb, impulse);
+    push(m, t, p->spin_ta, p->spin_tb, impulse);
 }
 
 /* Bring the normal velocity to what is wanted, without pulling. Returns the impulse. */
-static inline double solve_normal(Contact *c, Point *p, Mover *a, Mover *b, double wanted) {
-    double v = speed(a, b, c->normal, p->spin_na, p->spin_nb);
+static inline double solve_normal(const Contact *c, Point *p, Meeting *m, double wanted) {
+    double v = speed(m, c->normal, p->spin_na, p->spin_nb);
     double sum = p->impulse_n - p->mass_n * (v - wanted);
     sum = sum > 0 ? sum : 0;
     double impulse = sum - p->impulse_n;
     if (impulse == 0) return 0;
     p->impulse_n = sum;
-    push(c, a, b, c->normal, p->spin_na, p->spin_nb, impulse);
+    push(m, c->normal, p->spin_na, p->spin_nb, impulse);
     return impulse;
 }
 
 /* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
-static inline void solve_rolling(const Contact *c, Mover *a, Mover *b) {
+static inline void solve_rolling(const Contact *c, Meeting *m) {
     double normal = c->point[0].impulse_n + (c->count > 1 ? c->point[1].impulse_n : 0), most = c->rolling * normal;
-    double wanted = (a->spin - b->spin) / (c->inverse_moment_a + c->inverse_moment_b);
+    double wanted = (m->spin_a - m->spin_b) / (m->inverse_moment_a + m->inverse_moment_b);
     wanted = wanted > most ? most : wanted < -most ? -most : wanted;
-    a->spin -= c->inverse_moment_a * wanted;
-    b->spin += c->inverse_moment_b * wanted;
+    m->spin_a -= m->inverse_moment_a * wanted;
+    m->spin_b += m->inverse_moment_b * wanted;
 }
 
 /* Both normal rows of a contact at once, so that neither end of a box goes first: the linear complementarity problem of two
  * rows by its four cases (Catto's Box2D). wanted: the normal velocities. Returns the larger change relative to its mass. */
-static inline double solve_pair(Contact *c, Mover *a, Mover *b) {
+static inline double solve_pair(Contact *c, Meeting *m) {
     Point *p = &c->point[0], *q = &c->point[1];
     double k11 = p->mobility, k22 = q->mobility, k12 = c->coupling;
-    double vp = speed(a, b, c->normal, p->spin_na, p->spin_nb) - p->limit;
-    double vq = speed(a, b, c->normal, q->spin_na, q->spin_nb) - q->limit;
+    double vp = speed(m, c->normal, p->spin_na, p->spin_nb) - p->limit;
+    double vq = speed(m, c->normal, q->spin_na, q->spin_nb) - q->limit;
     /* what the velocities would be without the impulses so far */
     double bp = vp - k11 * p->impulse_n - k12 * q->impulse_n, bq = vq - k12 * p->impulse_n - k22 * q->impulse_n;
     double x = (k12 * bq - k22 * bp) * c->pair_mass, y = (k12 * bp - k11 * bq) * c->pair_mass;
@@ -109,8 +131,8 @@ static inline double solve_pair(Contact *c, Mover *a, Mover *b) {
     double dx = x - p->impulse_n, dy = y - q->impulse_n;
     p->impulse_n = x;
     q->impulse_n = y;
-    push(c, a, b, c->normal, p->spin_na, p->spin_nb, dx);
-    push(c, a, b, c->normal, q->spin_na, q->spin_nb, dy);
+    push(m, c->normal, p->spin_na, p->spin_nb, dx);
+    push(m, c->normal, q->spin_na, q->spin_nb, dy);
     double ax = fabs(dx) * k11, ay = fabs(dy) * k22;
     return ax > ay ? ax : ay;
 }
@@ -121,19 +143,21 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
         Contact *c = &contact[i];
         if (!first && heat[c->a] < pass - 1 && heat[c->b] < pass - 1) continue;
         Mover *a = &mover[c->a], *b = &mover[c->b];
+        Meeting m = meet(c, a, b);
         double change = 0;
         if (c->count == 2 && c->pair_mass > 0) {
-            change = solve_pair(c, a, b);
+            change = solve_pair(c, &m);
         } else {
             for (int32_t k = 0; k < c->count; k++) {
                 Point *p = &c->point[k];
-                double impulse = solve_normal(c, p, a, b, p->limit);
+                double impulse = solve_normal(c, p, &m, p->limit);
                 change = larger(change, fabs(impulse) * p->mobility);
             }
         }
         Vec t = vperp(c->normal);
-        for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], a, b, t);
-        if (c->rolling > 0) solve_rolling(c, a, b);
+        for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], &m, t);
+        if (c->rolling > 0) solve_rolling(c, &m);
+        leave(&m, a, b);
         if (change * dt <= c->fine) continue;
         heated = true;
         if (a->inverse_mass > 0) heat[c->a] = pass;
@@ -186,7 +210,9 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
             if (p->approach == 0 || p->impulse_n <= 0) continue;
-            solve_normal(c, p, &mover[c->a], &mover[c->b], -c->elasticity * p->approach);
+            Meeting m = meet(c, &mover[c->a], &mover[c->b]);
+            solve_normal(c, p, &m, -c->elasticity * p->approach);
+            leave(&m, &mover[c->a], &mover[c->b]);
             p->approach = 0;
         }
     }
