@@ -1,4 +1,5 @@
-/* What the parts of the crowd share: crowd.c steps, crowd_touch.c finds contacts, crowd_rest.c puts islands to sleep. */
+/* What the parts of the crowd share: crowd.c steps, crowd_touch.c finds contacts, crowd_contact.c makes them,
+ * crowd_rest.c puts bodies to rest. */
 #ifndef CROWD_PARTS_H
 #define CROWD_PARTS_H
 
@@ -65,6 +66,11 @@ struct Crowd {
 };
 
 static inline bool crowd_moves(const World *world, int32_t body) { return world->body[body].mode == MODE_CROWD; }
+
+/* crowd_contact.c */
+double contact_reach(const World *world, int32_t piece_a, int32_t piece_b);
+void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Record *old);
+void contact_add(Crowd *crowd, const World *world, const Near *near, const Manifold *m);
 
 /* crowd_touch.c */
 int touch_create(Crowd *crowd, const World *world);

@@ -7,7 +7,6 @@ static const double SKIN = 1e-3; /* of the smaller reach: as near as that counts
 static const double MORE = 0.05; /* of the smaller reach: a contact's other end comes with it when it is as near as that */
 static const double ROOM = 0.1;  /* of a body's reach: what it may stray from its way before its pairs are looked for anew */
 static const double FAST = 0.25; /* of the smaller reach in a substep: a pair as fast as that is followed to its touch */
-static const double APART = 1e3; /* conditioning up to which two points are solved as a pair */
 static const double TURN = 0.03; /* [rad]: a pair that has turned so far in the frame is looked at again */
 
 static void *table(size_t count, size_t size) { return calloc(count + 1, size); }
@@ -45,7 +44,8 @@ int touch_create(Crowd *crowd, const World *world) {
     crowd->start_angle = table(bodies, sizeof *crowd->start_angle);
     crowd->body_swing = table(bodies, sizeof *crowd->body_swing);
     crowd->lead = table(bodies, sizeof *crowd->lead);
-    if (!crowd->lead || !crowd->range || !crowd->start_angle || !crowd->body_swing || !crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves)
+    if (!crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves || !crowd->range ||
+        !crowd->start_angle || !crowd->body_swing || !crowd->lead)
         return SIM_OUT_OF_MEMORY;
     if (sweep_create(&crowd->sweep, world->shape_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (contact_room(crowd, 2 * world->body_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
@@ -180,104 +180,6 @@ static inline double approach(const Crowd *crowd, const Near *n, double dt) {
     return dt * (turning - vdot(n->normal, vsub(b->velocity, a->velocity)));
 }
 
-static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, const Mover *a, const Mover *b, Vec at_a,
-                       Vec at_b, double radius_a, double radius_b) {
-    Vec n = c->normal, t = vperp(n), ra = vsub(found->point, at_a), rb = vsub(found->point, at_b);
-    double m = c->inverse_mass_a + c->inverse_mass_b;
-    *p = (Point){0};
-    p->spin_na = vcross(ra, n);
-    p->spin_nb = vcross(rb, n);
-    p->spin_ta = vcross(ra, t);
-    p->spin_tb = vcross(rb, t);
-    p->along_na = vdot(ra, n) - radius_a; /* a disk touches with another point of it as it turns: its centre counts */
-    p->along_nb = vdot(rb, n) + radius_b;
-    p->mobility = m + c->inverse_moment_a * p->spin_na * p->spin_na + c->inverse_moment_b * p->spin_nb * p->spin_nb;
-    p->mass_n = 1 / p->mobility;
-    p->mass_t = 1 / (m + c->inverse_moment_a * p->spin_ta * p->spin_ta + c->inverse_moment_b * p->spin_tb * p->spin_tb);
-    /* what a mover has done in the frame so far is in the formula of crowd_rows.c, and taken off here */
-    p->separation = found->separation - vdot(vsub(b->moved, a->moved), n) - b->turned * p->spin_nb +
-                    a->turned * p->spin_na +
-                    0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
-}
-
-static double least_reach(const World *world, int32_t piece_a, int32_t piece_b) {
-    return smaller(world->shape[world->piece[piece_a].shape].reach, world->shape[world->piece[piece_b].shape].reach);
-}
-
-/* The points of a contact from its manifold, with the impulses that the same points had in `old`. */
-static void set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Record *old) {
-    const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
-    Vec at_a = vadd(world->body[c->a].position, a->moved), at_b = vadd(world->body[c->b].position, b->moved);
-    double radius_a = world->piece[c->key >> 32].radius, radius_b = world->piece[c->key & 0xffffffffu].radius;
-    c->count = m->count;
-    c->normal = m->normal;
-    c->turned = b->turned - a->turned;
-    c->moved = vsub(b->moved, a->moved);
-    for (int32_t k = 0; k < m->count; k++) {
-        fill_point(&c->point[k], &m->point[k], c, a, b, at_a, at_b, radius_a, radius_b);
-        int32_t same = -1;
-        double nearest = 4 * c->slack;
-        for (int32_t l = 0; old && l < old->count; l++) {
-            double shift = fabs(old->lever[l] - c->point[k].spin_na);
-            if (shift < nearest) {
-                nearest = shift;
-                same = l;
-            }
-        }
-        if (same < 0) continue;
-        c->point[k].impulse_n = old->impulse_n[same];
-        c->point[k].impulse_t = old->impulse_t[same];
-    }
-    c->pair_mass = 0;
-    if (c->count < 2) return;
-    const Point *p = &c->point[0], *q = &c->point[1];
-    double k11 = p->mobility, k22 = q->mobility;
-    c->coupling = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * p->spin_na * q->spin_na +
-                  c->inverse_moment_b * p->spin_nb * q->spin_nb;
-    double determinant = k11 * k22 - c->coupling * c->coupling;
-    if (k11 * k22 < APART * determinant) c->pair_mass = 1 / determinant;
-}
-
-/* Bodies this slow come to rest by rolling resistance, as real ones do: without it a box rocks on a ball for ever. */
-static bool slow(const World *world, int32_t body) {
-    static const double SLOW = 0.1; /* of the speed of falling by its own reach */
-    const Body *b = &world->body[body];
-    double limit = SLOW * SLOW * vlength(world->gravity) * b->reach;
-    return vdot(b->velocity, b->velocity) + b->spin * b->spin * b->reach * b->reach <= limit;
-}
-
-/* In their contact a body counts as no more than so many times as heavy as the other: sequential impulses take as many
- * passes as that to hold the heavy on the light, and a blow is hardly different. */
-static void set_masses(Contact *c, const Mover *a, const Mover *b) {
-    static const double HEAVIER = 100;
-    double least_a = b->inverse_mass / HEAVIER, least_b = a->inverse_mass / HEAVIER;
-    double scale_a = a->inverse_mass > 0 && a->inverse_mass < least_a ? least_a / a->inverse_mass : 1;
-    double scale_b = b->inverse_mass > 0 && b->inverse_mass < least_b ? least_b / b->inverse_mass : 1;
-    c->inverse_mass_a = scale_a * a->inverse_mass;
-    c->inverse_moment_a = scale_a * a->inverse_moment;
-    c->inverse_mass_b = scale_b * b->inverse_mass;
-    c->inverse_moment_b = scale_b * b->inverse_moment;
-}
-
-static void add_contact(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
-    static const double SLACK = 0.05, SLOP = 0.005, FINE = 5e-3, ROLLING = 2e-3;
-    const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
-    const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
-    double reach = least_reach(world, near->piece_a, near->piece_b);
-    Contact *c = &crowd->contact[crowd->contact_count++];
-    c->a = near->a;
-    c->b = near->b;
-    set_masses(c, &crowd->mover[near->a], &crowd->mover[near->b]);
-    c->friction = pair_friction(sa, sb);
-    c->elasticity = pair_elasticity(sa, sb);
-    c->slack = SLACK * reach;
-    c->slop = SLOP * reach;
-    c->fine = FINE * reach;
-    c->rolling = slow(world, near->a) && slow(world, near->b) ? ROLLING * reach * (c->friction < 1 ? c->friction : 1) : 0;
-    c->key = pair_key(near->piece_a, near->piece_b);
-    set_points(crowd, world, c, m, memory_recall(&crowd->memory, c->key));
-}
-
 static void find_manifold(Crowd *crowd, World *world, int32_t piece_a, int32_t piece_b, int32_t a, int32_t b, double margin,
                           Manifold *m) {
     if (crowd->placed[a] != crowd->moment) touch_place(crowd, world, a);
@@ -293,12 +195,12 @@ static bool look(Crowd *crowd, World *world, Near *near, double soon, double lat
     find_manifold(crowd, world, near->piece_a, near->piece_b, near->a, near->b, later, &m);
     set_near(crowd, near, m.normal, m.gap);
     if (m.count == 0 || m.gap > soon) return false;
-    add_contact(crowd, world, near, &m);
+    contact_add(crowd, world, near, &m);
     return true;
 }
 
 static double skin_of(const World *world, const Near *near) {
-    return SKIN * least_reach(world, near->piece_a, near->piece_b);
+    return SKIN * contact_reach(world, near->piece_a, near->piece_b);
 }
 
 /* An upper bound of how much nearer two bodies come in dt, whatever the direction. */
@@ -339,7 +241,7 @@ static int consider(Crowd *crowd, World *world, Near near, double dt, double sub
             gap = kept;
         }
     }
-    double reach = least_reach(world, near.piece_a, near.piece_b);
+    double reach = contact_reach(world, near.piece_a, near.piece_b);
     if (gap <= soon && soon <= FAST * reach) contact = look(crowd, world, &near, soon, later + MORE * reach);
     if (!contact) crowd->near[crowd->near_count++] = near;
     if (near.gap > later) return SIM_OK;
@@ -436,7 +338,7 @@ void touch_refresh(Crowd *crowd, World *world, double left, double threshold) {
         Manifold m;
         find_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b, closing(crowd, world, &near, left) + c->slack, &m);
         Record old = contact_record(c);
-        set_points(crowd, world, c, &m, &old);
+        contact_set_points(crowd, world, c, &m, &old);
         contacts_measure(c, 1, crowd->mover, threshold);
     }
 }
@@ -541,7 +443,7 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     for (int32_t i = 0; i < crowd->near_count; i++) {
         Near *near = &crowd->near[i];
         if (gap_now(crowd, near) <= approach(crowd, near, substep)) {
-            double soon = closing(crowd, world, near, substep), reach = least_reach(world, near->piece_a, near->piece_b);
+            double soon = closing(crowd, world, near, substep), reach = contact_reach(world, near->piece_a, near->piece_b);
             double later = soon + closing(crowd, world, near, left) + MORE * reach;
             bool fast = soon > FAST * reach;
             if (fast ? look_along(crowd, world, near, substep, later) : look(crowd, world, near, soon, later)) {

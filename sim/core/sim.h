@@ -79,7 +79,7 @@ typedef struct SimProfile {
     double rests;          /* islands put to rest */
     double separated;      /* bodies moved apart before the start */
     double separation;     /* the farthest that one was moved [m] */
-    double let_overlap;    /* pairs too deep in one another at the start: they do not collide until they are apart */
+    double let_overlap;    /* pairs too deep in one another at the start: they do not collide */
     double budget_spent;   /* islands handed to the crowd because their events came too fast */
 } SimProfile;
 
