@@ -21,6 +21,7 @@ NO_BODY = 30.0  # nats that an X away from every body is unlikely: it would mean
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 LETTER = 0.15  # of the page: larger bars are no letter
+TWIG = 0.04  # of the page: an open line that is shorter is a slip too
 DOT = 0.012  # of the page: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
 
@@ -43,7 +44,7 @@ def with_context(candidates: list[Fitted], gains: list[float], chosen: list[int]
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
         elif c.kind == "bar":
-            gains[k] -= SLIP * bodies.slip(c, extent)
+            gains[k] -= SLIP * (bodies.slip(c, extent) or extent < TWIG * size)
         elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
             gains[k] += ANCHORS
     for k in _letters(candidates, gains, chosen, LETTER * size):
