@@ -148,6 +148,27 @@ static int load_part(Exact *e, const Island *island, double time) {
     return SIM_OK;
 }
 
+static double energy_of(const Exact *e, int32_t body, const State *s) {
+    const Body *b = &e->world->body[body];
+    return 0.5 * (b->mass * vdot(s->v, s->v) + b->moment * s->spin * s->spin) - b->mass * vdot(e->world->gravity, s->p);
+}
+
+/* A wedge with friction can come where no finite forces hold it (Painleve's paradox): the step that meets that makes energy
+ * without bound, and is not to be taken. */
+static bool step_made_energy(const Exact *e, double from) {
+    double before = 0, after = 0, kinetic = 0, mass = 0;
+    for (int32_t k = 0; k < e->part.count; k++) {
+        int32_t member = e->part.member[k];
+        State start = motion_state(&e->motion[k], from), end = motion_state(&e->motion[k], e->motion[k].end);
+        before += energy_of(e, member, &start);
+        after += energy_of(e, member, &end);
+        kinetic += energy_of(e, member, &end) + e->world->body[member].mass * vdot(e->world->gravity, end.p);
+        mass += e->world->body[member].mass;
+    }
+    double unseen = 10 * e->slack.speed, rounding = vlength(e->world->gravity) * e->tolerance + 0.5 * unseen * unseen;
+    return after - before > 0.01 * kinetic + mass * rounding;
+}
+
 int island_advance(Exact *e, int32_t index, double from) {
     Island *island = &e->island[index];
     double start = seconds_now();
@@ -160,6 +181,7 @@ int island_advance(Exact *e, int32_t index, double from) {
     if (status == SIM_OK)
         status = smooth_step(&e->smooth, &e->part, from, fmax(e->end, from + 1e-9), &island->step, e->motion,
                              &island->ended);
+    island->jammed = island->jammed || (status == SIM_OK && step_made_energy(e, from));
     island->ended = island->ended || island->jammed;
     island->relax = e->smooth.relax;
     for (int32_t k = 0; k < island->contact_count; k++) island->contact[k] = e->part.contact[k];

@@ -360,6 +360,26 @@ static bool any_too_deep(Exact *e) {
     return false;
 }
 
+static double kinetic_energy(const Exact *e) {
+    double sum = 0;
+    for (int32_t i = 0; i < e->group.count; i++) {
+        const Body *body = &e->world->body[e->group.member[i]];
+        const State *s = &e->group.state[i];
+        sum += 0.5 * (body->mass * vdot(s->v, s->v) + body->moment * s->spin * s->spin);
+    }
+    return sum;
+}
+
+/* Jams with joints and friction can have impulses that make energy; then the group is as it was before them. */
+static bool made_energy(Exact *e, double before, double time) {
+    System *g = &e->group;
+    double mass = 0, unseen = 10 * e->slack.speed;
+    for (int32_t i = 0; i < g->count; i++) mass += e->world->body[g->member[i]].mass;
+    if (kinetic_energy(e) <= before * (1 + 1e-5) + 0.5 * mass * unseen * unseen) return false;
+    for (int32_t i = 0; i < g->count; i++) g->state[i] = motion_state(&e->track[g->member[i]].motion, time);
+    return true;
+}
+
 int group_reform(Exact *e, double time) {
     System *g = &e->group;
     e->world->profile.events += 1;
@@ -374,7 +394,7 @@ int group_reform(Exact *e, double time) {
         return SIM_OK;
     }
     system_find_joints(g);
-    double start = seconds_now();
+    double start = seconds_now(), energy = kinetic_energy(e);
     status = find_pulls(e, time);
     settle_low_bounces(e);
     if (status == SIM_OK) status = resolve(e, time);
@@ -386,6 +406,7 @@ int group_reform(Exact *e, double time) {
         if (status == SIM_OK) status = find_modes(&e->solver, g, &e->slack, e->acceleration);
     }
     e->world->profile.impact_time += seconds_now() - start;
+    if (status == SIM_OK && made_energy(e, energy, time)) status = SIM_BAD_INPUT;
     if (status == SIM_BAD_INPUT) { /* contacts that admit no rigid motion: the crowd's soft ones do */
         group_send_to_crowd(e, time);
         return SIM_OK;
