@@ -24,7 +24,7 @@ def boxed(seed: int) -> Scene:
         {"id": name, "shape": {"type": "rectangle", "size": size}, "position": at, "anchored": True}
         for name, (size, at) in WALLS.items()
     ]
-    cells = [(-3.2 + 0.91 * i, 0.5 + 0.83 * j) for i in range(8) for j in range(12)]
+    cells = [(-3.2 + 0.91 * i, 0.5 + 0.83 * j) for i in range(8) for j in range(7)]
     r.shuffle(cells)
     n = r.choice([6, 10, 16, 24, 40])
     for k in range(n):
