@@ -7,8 +7,9 @@
 #define BUCKET_LEAK 200.0   /* and a second in the long run */
 #define MOST_REPEATS 30     /* events of one body at one moment */
 #define JAMMED 1000.0      /* times the slack: a speed against constraints that says they contradict each other */
+#define STEPS_A_SECOND 20000.0 /* of the integrator, a simulated second: what turns faster than that is for the crowd */
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
-#define PAIRS_OF_FEW 1e6    /* a few bodies are worth this many pairs among them: exactness is what is asked for */
+#define PAIRS_OF_FEW 1e6 /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
 int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, double end) {
     size_t n = (size_t)world->body_count;
@@ -177,7 +178,9 @@ int island_advance(Exact *e, int32_t index, double from) {
     if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
     double left = 0;
     if (status == SIM_OK) status = smooth_project(&e->smooth, &e->part, &left);
-    island->jammed = left > JAMMED * e->slack.speed;
+    e->steps = fmax(0, e->steps - STEPS_A_SECOND * (from - e->steps_time)) + 1;
+    e->steps_time = from;
+    island->jammed = left > JAMMED * e->slack.speed || e->steps > STEPS_A_SECOND;
     if (status == SIM_OK)
         status = smooth_step(&e->smooth, &e->part, from, fmax(e->end, from + 1e-9), &island->step, e->motion,
                              &island->ended);

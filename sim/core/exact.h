@@ -61,6 +61,7 @@ typedef struct Exact {
     PairList before, after;   /* pairs in contact, before an event and after it */
     bool *changed, *fresh;    /* bodies whose touches, or everything, have to be looked at again */
     double spent, spent_time; /* pairs looked at lately, for the budget */
+    double steps, steps_time; /* of the integrator, likewise */
 } Exact;
 
 int exact_create(Exact *exact, World *world, Recorder *recorder, double tolerance, double end);
