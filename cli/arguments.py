@@ -8,7 +8,16 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
-__all__ = ["Parser", "PrintVersion", "UsageError", "number", "picture_size", "vector", "whole_number"]
+__all__ = [
+    "Parser",
+    "PrintVersion",
+    "UsageError",
+    "number",
+    "picture_size",
+    "reading",
+    "vector",
+    "whole_number",
+]
 
 MAX_SIDE = 7680  # 8K; beyond it players and H.264 levels give up
 
@@ -103,3 +112,11 @@ def _float(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text} is not a finite number")
     return value
+
+
+def reading(text: str) -> tuple[tuple[int, ...], str]:
+    """STROKES=KIND, as 3,4=anchor, told apart; which kinds there are the recognizer knows."""
+    strokes, equals, kind = text.partition("=")
+    if not equals or re.fullmatch(r"\d+(,\d+)*", strokes) is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is not STROKES=KIND, as 3,4=anchor")
+    return tuple(int(k) for k in strokes.split(",")), kind.strip()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from sketch.recognize import Recognition
 
 __all__ = ["Loaded", "load", "load_bytes", "naming", "read", "recognize_bytes"]
+
+Readings = Sequence[tuple[tuple[int, ...], str]]
 
 STDIN = "-"
 MAX_BYTES = 64 << 20  # of any input: a photo of 12 megapixels has 2 to 15 MB
@@ -50,12 +52,15 @@ def _check_size(data: bytes, source: str) -> bytes:
     return data
 
 
-def load(source: str, scale: float | None = None) -> Loaded:
-    """The scene that `source` holds or shows; `scale` is the ink's pixels per metre."""
-    return load_bytes(read(source), source, scale)
+def load(source: str, scale: float | None = None, readings: Readings = ()) -> Loaded:
+    """The scene that `source` holds or shows.
+
+    scale: the ink's pixels per metre.  readings: what some strokes are, by their numbers.
+    """
+    return load_bytes(read(source), source, scale, readings)
 
 
-def load_bytes(data: bytes, source: str, scale: float | None = None) -> Loaded:
+def load_bytes(data: bytes, source: str, scale: float | None = None, readings: Readings = ()) -> Loaded:
     """The scene that an input's bytes hold or show."""
     if is_scene(data):
         if scale is not None:
@@ -63,8 +68,10 @@ def load_bytes(data: bytes, source: str, scale: float | None = None) -> Loaded:
                 f"--scale: {source} is a scene, which is in metres already",
                 "--scale is for strokes and pictures",
             )
+        if readings:
+            raise UsageError(f"--read: {source} is a scene, without strokes", "edit the scene itself")
         return Loaded(Scene.from_json(data))
-    recognition = recognize_bytes(data, scale)
+    recognition = recognize_bytes(data, scale, readings)
     return Loaded(recognition.scene, recognition)
 
 
@@ -88,11 +95,16 @@ def is_scene(data: bytes) -> bool:
     return kind_of(data) == "scene"
 
 
-def recognize_bytes(data: bytes, scale: float | None = None) -> Recognition:
+def recognize_bytes(data: bytes, scale: float | None = None, readings: Readings = ()) -> Recognition:
     """Read ink and understand it."""
     from sketch import load_sketch, recognize
 
     sketch = load_sketch(data)
     if scale is not None:
         sketch = dataclasses.replace(sketch, pixels_per_metre=scale)
-    return recognize(sketch)
+    try:
+        return recognize(sketch, overrides=dict(readings))
+    except InputError as e:
+        if e.path.startswith("overrides["):  # what the command calls --read
+            raise UsageError(f"--read {e.path[10:-1]}: {e.problem}", e.hint) from None
+        raise

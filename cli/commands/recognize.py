@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import TYPE_CHECKING
 
-from cli.arguments import number
+from cli.arguments import number, reading
 from cli.outputs import STDOUT, Outputs, check_outputs
 
-if TYPE_CHECKING:
-    from sketch.recognize import Recognition
+__all__ = ["READ_HELP", "configure"]
 
-__all__ = ["configure"]
-
+READ_HELP = "what strokes are, as 3,4=anchor or 9=ignore; may be given several times"
 EPILOG = """\
 examples:
   sketchsim recognize cart.json                    the scene as JSON on standard output
   sketchsim recognize photo.jpg -o scene.json --overlay seen.png
-  sketchsim recognize cart.json --explain          every reading, its score and what else it could be
+  sketchsim recognize cart.json --explain          why each stroke was taken for what it was
+  sketchsim recognize cart.json --read 3,4=anchor --read 9=ignore -o scene.json
 """
 
 
@@ -32,10 +30,13 @@ def configure(p: argparse.ArgumentParser) -> None:
     p.add_argument("-o", dest="output", metavar="OUT", help="scene.json; - is standard output")
     p.add_argument("--overlay", metavar="PNG", help="a picture of what was recognized, over the ink")
     p.add_argument(
-        "--explain", action="store_true", help="print every reading, its score and the alternatives"
+        "--explain", action="store_true", help="say of every reading why it is this and not the next"
     )
     p.add_argument(
         "--scale", type=number(0, 1e9), metavar="PX_PER_M", help="pixels of the drawing in a metre"
+    )
+    p.add_argument(
+        "--read", action="append", default=[], type=reading, metavar="STROKES=KIND", help=READ_HELP
     )
     p.set_defaults(run=run)
 
@@ -53,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     data = read(options.input)
     if is_scene(data):
         raise InputError("", f"{options.input} is a scene already", "`sketchsim simulate` runs it")
-    recognition = recognize_bytes(data, options.scale)
+    recognition = recognize_bytes(data, options.scale, options.read)
     for text in recognition.scene.notes:
         note(text)
     with Outputs() as files:
@@ -65,29 +66,5 @@ def run(options: argparse.Namespace) -> int:
 
             files.write(options.overlay, png(overlay(recognition)))
     if options.explain:
-        print(explanation(recognition), file=sys.stderr if output == STDOUT else sys.stdout)
+        print(recognition.explain(), file=sys.stderr if output == STDOUT else sys.stdout)
     return 0
-
-
-def explanation(recognition: Recognition) -> str:
-    """Every reading in a line: kind, score, strokes, what else; then what the scene was made of them."""
-    lines = []
-    for reading in recognition.readings:
-        strokes = ", ".join(str(k) for k in reading.strokes)
-        score = "" if reading.kind == "unread" else f"{reading.score:.0%}"
-        line = f"{reading.kind:<10} {score:>4}   strokes {strokes}"
-        if reading.alternatives:
-            line += "   or " + ", ".join(f"{kind} {score:.0%}" for kind, score in reading.alternatives[:3])
-        lines.append(line)
-    scene = recognition.scene
-    for body in scene.bodies:
-        kind = type(body.shape).__name__.lower()
-        x, y = body.position
-        lines.append(
-            f"body {body.id}: {kind} at ({x:.2f}, {y:.2f}) m" + (", anchored" if body.anchored else "")
-        )
-    for joint in scene.joints:
-        a, b = (name or "the background" for name in joint.bodies)
-        lines.append(f"pivot: {a} on {b} at ({joint.position[0]:.2f}, {joint.position[1]:.2f}) m")
-    lines.append("gravity: ({:.2f}, {:.2f}) m/s²".format(*scene.gravity))
-    return "\n".join(lines)

@@ -11,7 +11,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cli.arguments import UsageError, number, picture_size, vector
+from cli.arguments import UsageError, number, picture_size, reading, vector
+from cli.commands.recognize import READ_HELP
 from cli.outputs import STDOUT, Outputs, check_outputs
 from cli.results import ENDINGS, Look, Run
 
@@ -102,6 +103,9 @@ def add_run_options(p: argparse.ArgumentParser) -> None:
     p.add_argument(
         "--scale", type=number(0, 1e9), metavar="PX_PER_M", help="pixels of the drawing in a metre"
     )
+    p.add_argument(
+        "--read", action="append", default=[], type=reading, metavar="STROKES=KIND", help=READ_HELP
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -147,7 +151,7 @@ def run_of(
     from cli.inputs import load
 
     progress.say("reading")
-    loaded = load(source, options.scale)
+    loaded = load(source, options.scale, options.read)
     look = _look(options, loaded.scene)
     progress.say("simulating")
     motion = motion_of(loaded, options, tell)

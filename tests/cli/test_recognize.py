@@ -15,6 +15,7 @@ from cli.main import main
 from cli.render.overlay import overlay
 from cli.render.style import CLEAN
 from sim.scene import Scene
+from sketch import load_sketch, recognize
 from sketch.ink import Sketch, Stroke
 from sketch.recognize import Reading, Recognition
 
@@ -88,6 +89,24 @@ def test_explanation_leaves_standard_output_to_the_scene(
     captured = capfdbinary.readouterr()
     assert len(Scene.from_json(captured.out).bodies) == 2
     assert b"rectangle" in captured.err
+
+
+def test_strokes_are_what_the_caller_says(sketch_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = sketch_file.parent / "scene.json"
+    before = recognize(load_sketch(sketch_file))
+    ball = next(r for r in before.readings if r.kind == "circle")
+    said = ",".join(map(str, ball.strokes)) + "=ignore"
+    assert main(["recognize", str(sketch_file), "-o", str(out), "--read", said]) == 0
+    assert len(Scene.load(out).bodies) == len(before.scene.bodies) - 1
+    assert main(["simulate", str(sketch_file), "-o", str(out), "--read", said, "--duration", "0.1"]) == 0
+    for wrong, message in [
+        ("3", "'3' is not STROKES=KIND"),
+        ("0=wheel", "'wheel' is not a reading"),
+        ("999=ball", "there is no stroke 999"),
+    ]:
+        capsys.readouterr()
+        assert main(["recognize", str(sketch_file), "-o", str(out), "--read", wrong]) == 2
+        assert message in capsys.readouterr().err
 
 
 def test_drawing_to_video_falls_and_rests(sketch_file: Path) -> None:
