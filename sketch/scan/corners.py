@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.graph import RING, Graph
 
-__all__ = ["sharpen_corners"]
+__all__ = ["begin_at_corner", "sharpen_corners"]
 
 Points = NDArray[np.float64]
 
@@ -37,6 +37,16 @@ def sharpen_corners(graph: Graph, distance: NDArray[Any], pen: float) -> None:
             points = np.roll(points, -int(np.argmin(turn)), axis=0)
         points = _sharpened(points, distance, pen, cut, side)
         edge.points = np.concatenate([points, points[:1]]) if closed else points
+
+
+def begin_at_corner(points: Points, pen: float) -> Points:
+    """A stroke, if it is closed begun where it turns the most, as a hand would; shape (n, 2)."""
+    cut = max(round(CUT * pen), 1)
+    if len(points) < 4 * cut or not np.array_equal(points[0], points[-1]):
+        return points
+    around = points[:-1]
+    around = np.roll(around, -int(np.argmax(_turns(around, cut, True))), axis=0)
+    return np.concatenate([around, around[:1]])
 
 
 def _turns(points: Points, cut: int, closed: bool) -> NDArray[np.float64]:

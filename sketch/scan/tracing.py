@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import thin, trace
-from sketch.scan.corners import sharpen_corners
+from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.graph import build_graph
 from sketch.scan.page import Page, drop_specks, fill_pinholes, hollow_fills, ink_mask, read_page
 from sketch.scan.ridge import centre_on_ink
@@ -110,7 +110,8 @@ def _strokes(seen: Traced) -> list[Points]:
     rings = take_rings(graph, find_rings(mask, distance, pen), pen)
     centre_on_ink(graph, page.darkness, pen)
     sharpen_corners(graph, distance, pen)
-    strokes = [smooth(s, SMOOTHING) for s in trace_strokes(graph, pen) + rings]
+    strokes = [begin_at_corner(s, pen) for s in trace_strokes(graph, pen)] + rings
+    strokes = [smooth(s, SMOOTHING) for s in strokes]
     return [(s + 0.5) * seen.scale - 0.5 for s in strokes if len(s) > 1]
 
 
