@@ -73,7 +73,7 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     }
     if (status != SIM_OK) return status;
     move(crowd, dt);
-    pivots_join(&crowd->pivots, mover, 1 / dt);
+    pivots_join(&crowd->pivots, mover, crowd->contact_count == 0 ? 1 / dt : 0); /* with contacts it could feed a jam */
     pivots_factor(&crowd->pivots, mover);
     crowd->moment++;
     contacts_part(crowd->contact, crowd->contact_count, mover);

@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-static const double REDUNDANT = 1e-9; /* of a row's diagonal: what is left of one that others imply */
+static const double GIVE = 1e-3; /* of a row's diagonal: loops, and chains drawn taut, say the same thing more than once */
 
 int pivots_create(Pivots *pivots, const World *world) {
     size_t n = (size_t)world->joint_count + 1;
@@ -138,7 +138,7 @@ void pivots_factor(Pivots *pivots, const Mover *mover) {
         }
     }
     for (int32_t i = 0; i < 2 * pivots->count; i++) {
-        double *row = at(pivots, i, 0), diagonal = row[i], left = diagonal;
+        double *row = at(pivots, i, 0), left = row[i] * (1 + GIVE);
         for (int32_t j = pivots->first[i]; j < i; j++) {
             const double *above = at(pivots, j, 0);
             int32_t begin = pivots->first[i] > pivots->first[j] ? pivots->first[i] : pivots->first[j];
@@ -149,7 +149,7 @@ void pivots_factor(Pivots *pivots, const Mover *mover) {
             left -= l * row[j];
             row[j] = l;
         }
-        pivots->inverse_d[i] = left > REDUNDANT * diagonal ? 1 / left : 0;
+        pivots->inverse_d[i] = left > 0 ? 1 / left : 0;
     }
 }
 
