@@ -22,6 +22,7 @@ Points = NDArray[np.float64]
 
 WORK_PIXELS = 2_500_000  # more than this are not looked at before the pen's width is known
 LEAST_SIDE = 8  # [pixels] of a picture that can show anything
+FINEST = 0.5  # picture pixels to a pixel: the thinnest pens are thinned at twice the picture's resolution
 NARROWEST_PEN = 3.0  # [pixels]: a thinner pen is thinned at twice the resolution, where there is more
 WIDEST_PEN = 6.4  # [pixels]: a wider pen is thinned at half the resolution
 SMOOTHING = 0.8  # [points]: standard deviation of the smoothing along a stroke
@@ -62,7 +63,7 @@ def trace_picture(picture: NDArray[Any]) -> Traced:
             return seen
         tried.add(scale)
         scale *= 2.0 if seen.pen > WIDEST_PEN else 0.5 if seen.pen < NARROWEST_PEN else 1.0
-        if scale in tried or scale < 1 or min(picture.shape[:2]) < 100 * scale:
+        if scale in tried or scale < FINEST or min(picture.shape[:2]) < 100 * scale:
             break
     seen.strokes = _strokes(seen)
     return seen
@@ -73,8 +74,9 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
     import cv2
 
     work = picture
-    if scale > 1:
-        work = cv2.resize(picture, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
+    if scale != 1:
+        way = cv2.INTER_AREA if scale > 1 else cv2.INTER_LINEAR
+        work = cv2.resize(picture, None, fx=1 / scale, fy=1 / scale, interpolation=way)
     if min(work.shape[:2]) < LEAST_SIDE:
         return Traced()
     page = read_page(work)
