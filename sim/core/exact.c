@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#define BUCKET_LIMIT 400.0  /* events of one body that may come in a burst */
+#define BUCKET_LIMIT 1500.0  /* events of one body that may come in a burst */
 #define BUCKET_LEAK 200.0   /* and a second in the long run */
 #define MOST_REPEATS 30     /* events of one body at one moment */
 #define JAMMED 1000.0      /* times the slack: a speed against constraints that says they contradict each other */
