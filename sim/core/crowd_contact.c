@@ -96,7 +96,8 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     c->slack = SLACK * reach;
     c->slop = SLOP * reach;
     c->fine = FINE * reach;
-    c->rolling = slow(world, near->a) && slow(world, near->b) ? ROLLING * reach * (c->friction < 1 ? c->friction : 1) : 0;
+    c->rolling =
+        slow(world, near->a) && slow(world, near->b) ? ROLLING * reach * (c->friction < 1 ? c->friction : 1) : 0;
     c->key = pair_key(near->piece_a, near->piece_b);
     contact_set_points(crowd, world, c, m, memory_recall(&crowd->memory, c->key));
 }

@@ -5,9 +5,9 @@
 
 #include "broad.h"
 #include "crowd.h"
-#include "posed.h"
 #include "crowd_memory.h"
 #include "crowd_pivots.h"
+#include "posed.h"
 
 /* Two pieces whose boxes meet but that do not touch yet: they cannot before the gap along the normal is used up. */
 typedef struct Near {
@@ -43,12 +43,13 @@ struct Crowd {
     Box *piece_box;      /* by piece, when the frame began, without margins */
     Box *shape_box;      /* by shape: all that it may sweep in the frame */
     Range *range;        /* by body: within which those boxes hold */
-    Index known;         /* the pairs of pieces that are contacts or near ones, once a body has left its range; else -1 of them */
+    Index
+        known; /* the pairs of pieces that are contacts or near ones, once a body has left its range; else -1 of them */
     bool *shape_moves;
     Sweep sweep;
     Near *near;
     int32_t near_count, near_capacity;
-    Near *last_near;     /* of the frame before, with their gaps when it ended */
+    Near *last_near; /* of the frame before, with their gaps when it ended */
     Index last_index;
     Contact *contact;
     int32_t contact_count, contact_capacity;
@@ -57,12 +58,12 @@ struct Crowd {
     /* crowd_rest.c */
     Vec *still_position; /* by body: where it was when it last moved */
     double *still_angle, *still_time;
-    int32_t *island;     /* by body: union-find */
+    int32_t *island; /* by body: union-find */
     double *island_time;
-    int32_t *ring;       /* by body: the next one that was put to rest with it */
-    double *roused;      /* by body: how hard it was woken in this frame [m/s], or 0 */
-    bool *nudged;        /* by body: to be woken when the frame is over */
-    bool *touched;       /* by body: has a contact, a joint, or something near */
+    int32_t *ring; /* by body: the next one that was put to rest with it */
+    double *roused; /* by body: how hard it was woken in this frame [m/s], or 0 */
+    bool *nudged; /* by body: to be woken when the frame is over */
+    bool *touched; /* by body: has a contact, a joint, or something near */
 };
 
 static inline bool crowd_moves(const World *world, int32_t body) { return world->body[body].mode == MODE_CROWD; }

@@ -24,25 +24,25 @@ typedef struct Point {
     double mass_n, mass_t;       /* effective masses */
     double mobility;             /* 1 / mass_n */
     double impulse_n, impulse_t; /* of one substep, kept for warm starting */
-    double limit;                /* the fastest that the two may approach in the substep, less than 0: at a gap, not to pass it */
-    double approach;             /* normal velocity before the touch, for restitution; 0 when none is due */
+    double limit; /* the fastest that the two may approach in the substep, less than 0: at a gap, not to pass it */
+    double approach; /* normal velocity before the touch, for restitution; 0 when none is due */
 } Point;
 
 typedef struct Contact {
-    int32_t a, b;       /* movers */
+    int32_t a, b; /* movers */
     int32_t count;
     double inverse_mass_a, inverse_moment_a, inverse_mass_b, inverse_moment_b;
-    double slack;       /* how far the pair may shift before its points are found anew [m] */
-    double slop;        /* overlap that is left alone, so that resting contacts do not come and go [m] */
-    double fine;        /* of a substep: a way too short to matter [m] */
-    Vec normal;         /* from a to b */
+    double slack; /* how far the pair may shift before its points are found anew [m] */
+    double slop; /* overlap that is left alone, so that resting contacts do not come and go [m] */
+    double fine; /* of a substep: a way too short to matter [m] */
+    Vec normal; /* from a to b */
     double friction, elasticity;
-    double rolling;     /* lever of the rolling resistance [m]; 0: none */
-    double coupling;    /* of the two points: how a push at one moves the other [1/kg] */
-    double pair_mass;   /* 1 / determinant of their 2 x 2 matrix; 0: too close together to be solved as a pair */
-    double turned;      /* of b against a when the points were found, in this frame */
-    Vec moved;          /* likewise */
-    uint64_t key;       /* the pieces */
+    double rolling; /* lever of the rolling resistance [m]; 0: none */
+    double coupling; /* of the two points: how a push at one moves the other [1/kg] */
+    double pair_mass; /* 1 / determinant of their 2 x 2 matrix; 0: too close together to be solved as a pair */
+    double turned; /* of b against a when the points were found, in this frame */
+    Vec moved; /* likewise */
+    uint64_t key; /* the pieces */
     Point point[2];
 } Contact;
 

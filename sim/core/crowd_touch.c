@@ -4,9 +4,12 @@
 #include "crowd_parts.h"
 
 static const double SKIN = 1e-3; /* of the smaller reach: as near as that counts as touching */
-static const double MORE = 0.05; /* of the smaller reach: a contact's other end comes with it when it is as near as that */
-static const double ROOM = 0.1;  /* of a body's reach: what it may stray from its way before its pairs are looked for anew */
-static const double FAST = 0.25; /* of the smaller reach in a substep: a pair as fast as that is followed to its touch */
+static const double MORE =
+    0.05; /* of the smaller reach: a contact's other end comes with it when it is as near as that */
+static const double ROOM =
+    0.1;  /* of a body's reach: what it may stray from its way before its pairs are looked for anew */
+static const double FAST =
+    0.25; /* of the smaller reach in a substep: a pair as fast as that is followed to its touch */
 static const double TURN = 0.03; /* [rad]: a pair that has turned so far in the frame is looked at again */
 
 static void *table(size_t count, size_t size) { return calloc(count + 1, size); }
@@ -44,8 +47,8 @@ int touch_create(Crowd *crowd, const World *world) {
     crowd->start_angle = table(bodies, sizeof *crowd->start_angle);
     crowd->body_swing = table(bodies, sizeof *crowd->body_swing);
     crowd->lead = table(bodies, sizeof *crowd->lead);
-    if (!crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves || !crowd->range ||
-        !crowd->start_angle || !crowd->body_swing || !crowd->lead)
+    if (!crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves ||
+        !crowd->range || !crowd->start_angle || !crowd->body_swing || !crowd->lead)
         return SIM_OUT_OF_MEMORY;
     if (sweep_create(&crowd->sweep, world->shape_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (contact_room(crowd, 2 * world->body_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
@@ -81,7 +84,8 @@ void touch_destroy(Crowd *crowd) {
 void touch_place(Crowd *crowd, const World *world, int32_t body) {
     const Body *b = &world->body[body];
     const Mover *m = &crowd->mover[body];
-    if (m->inverse_mass > 0) posed_place(&crowd->posed, world, body, pose(vadd(b->position, m->moved), b->angle + m->turned));
+    if (m->inverse_mass > 0)
+        posed_place(&crowd->posed, world, body, pose(vadd(b->position, m->moved), b->angle + m->turned));
     crowd->placed[body] = crowd->moment;
 }
 
@@ -97,8 +101,10 @@ static void widen_range(Crowd *crowd, const World *world, int32_t body, double l
     const Mover *m = &crowd->mover[body];
     Range *range = &crowd->range[body];
     Vec end = vadd(m->moved, vmad(vscale(m->velocity, left), left * left, world->gravity));
-    range->low = vec(smaller(range->low.x, smaller(m->moved.x, end.x)), smaller(range->low.y, smaller(m->moved.y, end.y)));
-    range->high = vec(larger(range->high.x, larger(m->moved.x, end.x)), larger(range->high.y, larger(m->moved.y, end.y)));
+    range->low =
+        vec(smaller(range->low.x, smaller(m->moved.x, end.x)), smaller(range->low.y, smaller(m->moved.y, end.y)));
+    range->high =
+        vec(larger(range->high.x, larger(m->moved.x, end.x)), larger(range->high.y, larger(m->moved.y, end.y)));
     range->room += ROOM * world->body[body].reach + smaller(fabs(m->spin) * left, 2.0) * crowd->body_swing[body];
 }
 
@@ -180,8 +186,8 @@ static inline double approach(const Crowd *crowd, const Near *n, double dt) {
     return dt * (turning - vdot(n->normal, vsub(b->velocity, a->velocity)));
 }
 
-static void find_manifold(Crowd *crowd, World *world, int32_t piece_a, int32_t piece_b, int32_t a, int32_t b, double margin,
-                          Manifold *m) {
+static void find_manifold(Crowd *crowd, World *world, int32_t piece_a, int32_t piece_b, int32_t a, int32_t b,
+                          double margin, Manifold *m) {
     if (crowd->placed[a] != crowd->moment) touch_place(crowd, world, a);
     if (crowd->placed[b] != crowd->moment) touch_place(crowd, world, b);
     manifold_find(&crowd->posed.outline[piece_a], &crowd->posed.outline[piece_b], margin, m);
@@ -206,7 +212,8 @@ static double skin_of(const World *world, const Near *near) {
 /* An upper bound of how much nearer two bodies come in dt, whatever the direction. */
 static double closing(const Crowd *crowd, const World *world, const Near *near, double dt) {
     const Mover *a = &crowd->mover[near->a], *b = &crowd->mover[near->b];
-    double turning = fabs(a->spin) * crowd->posed.swing[near->piece_a] + fabs(b->spin) * crowd->posed.swing[near->piece_b];
+    double turning =
+        fabs(a->spin) * crowd->posed.swing[near->piece_a] + fabs(b->spin) * crowd->posed.swing[near->piece_b];
     return dt * (vlength(vsub(b->velocity, a->velocity)) + turning) + dt * dt * vlength(world->gravity);
 }
 
@@ -334,9 +341,11 @@ void touch_refresh(Crowd *crowd, World *world, double left, double threshold) {
         Vec shifted = vsub(vsub(b->moved, a->moved), c->moved);
         double turned = b->turned - a->turned - c->turned;
         if (fabs(turned) < TURN && fabs(shifted.x) + fabs(shifted.y) < c->slack) continue;
-        Near near = {.piece_a = (int32_t)(c->key >> 32), .piece_b = (int32_t)(c->key & 0xffffffffu), .a = c->a, .b = c->b};
+        Near near = {
+            .piece_a = (int32_t)(c->key >> 32), .piece_b = (int32_t)(c->key & 0xffffffffu), .a = c->a, .b = c->b};
         Manifold m;
-        find_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b, closing(crowd, world, &near, left) + c->slack, &m);
+        find_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b,
+                      closing(crowd, world, &near, left) + c->slack, &m);
         Record old = contact_record(c);
         contact_set_points(crowd, world, c, &m, &old);
         contacts_measure(c, 1, crowd->mover, threshold);
@@ -367,7 +376,7 @@ static int add_near(Crowd *crowd, const World *world, int32_t shape_a, int32_t s
             if (!index_add(&crowd->known, pair_key(p, q), 0)) continue;
             if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
             if (contact_room(crowd, crowd->contact_count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
-            crowd->near[crowd->near_count++] = 
+            crowd->near[crowd->near_count++] =
                 (Near){.piece_a = p, .piece_b = q, .a = sa->body, .b = sb->body, .gap = -INFINITY};
         }
     return SIM_OK;
@@ -395,7 +404,8 @@ static int follow_strays(Crowd *crowd, const World *world, double left, double d
         const Mover *m = &crowd->mover[i];
         const Range *range = &crowd->range[i];
         Vec to = vmad(m->moved, dt, m->velocity);
-        double out = larger(larger(range->low.x - to.x, to.x - range->high.x), larger(range->low.y - to.y, to.y - range->high.y));
+        double out = larger(larger(range->low.x - to.x, to.x - range->high.x),
+                            larger(range->low.y - to.y, to.y - range->high.y));
         double turning = smaller(fabs(m->turned) + fabs(m->spin) * dt, 2.0) * crowd->body_swing[i];
         if (larger(out, 0) + turning <= range->room) continue;
         int status = follow(crowd, world, i, left);
@@ -443,7 +453,8 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     for (int32_t i = 0; i < crowd->near_count; i++) {
         Near *near = &crowd->near[i];
         if (gap_now(crowd, near) <= approach(crowd, near, substep)) {
-            double soon = closing(crowd, world, near, substep), reach = contact_reach(world, near->piece_a, near->piece_b);
+            double soon = closing(crowd, world, near, substep),
+                   reach = contact_reach(world, near->piece_a, near->piece_b);
             double later = soon + closing(crowd, world, near, left) + MORE * reach;
             bool fast = soon > FAST * reach;
             if (fast ? look_along(crowd, world, near, substep, later) : look(crowd, world, near, soon, later)) {

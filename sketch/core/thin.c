@@ -123,11 +123,9 @@ EXPORT int32_t ink_thin(uint8_t *mask, int32_t width, int32_t height) {
         next = swap;
     }
     for (size_t i = 0; i < count; i++)
-        if (is_step(neighbourhood(mask + list[i], offset)))
-            mask[list[i]] = 0;
+        if (is_step(neighbourhood(mask + list[i], offset))) mask[list[i]] = 0;
     left = 0; /* not all that is left was ever listed: the middle of a block stays unseen */
-    for (int64_t i = 0; i < (int64_t)width * height; i++)
-        left += mask[i] &= INK;
+    for (int64_t i = 0; i < (int64_t)width * height; i++) left += mask[i] &= INK;
     free(list < next ? list : next);
     return left;
 }

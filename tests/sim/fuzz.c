@@ -63,12 +63,18 @@ static void read_scene(Bytes *b, Scene *s) {
         SimBody *body = &s->body[i];
         uint8_t kind = byte(b);
         s->anchored[i] = kind % 5 == 0;
-        *body = (SimBody){.x = number(b, 1), .y = number(b, 1), .angle = number(b, 1),
-                          .mass = size(b), .moment = size(b),
-                          .friction = fabs(number(b, 0.1)), .elasticity = (byte(b) % 5) / 4.0};
+        *body = (SimBody){.x = number(b, 1),
+                          .y = number(b, 1),
+                          .angle = number(b, 1),
+                          .mass = size(b),
+                          .moment = size(b),
+                          .friction = fabs(number(b, 0.1)),
+                          .elasticity = (byte(b) % 5) / 4.0};
         if (!s->anchored[i]) body->vx = number(b, 2), body->vy = number(b, 2), body->spin = number(b, 2);
-        if (kind & 64) body->radius = size(b);
-        else vertices += outline(b, &s->vertices[2 * vertices]);
+        if (kind & 64)
+            body->radius = size(b);
+        else
+            vertices += outline(b, &s->vertices[2 * vertices]);
         s->vertex_start[i + 1] = vertices;
     }
     for (int32_t j = 0; j < joints; j++) {
@@ -78,8 +84,9 @@ static void read_scene(Bytes *b, Scene *s) {
         s->joint_points[2 * j] = number(b, 1);
         s->joint_points[2 * j + 1] = number(b, 1);
     }
-    s->input = (SimInput){bodies, joints, s->body, s->vertex_start, s->anchored, s->vertices, s->joint_bodies,
-                          s->joint_points, {number(b, 1), number(b, 1)}};
+    s->input = (SimInput){bodies,          joints,          s->body,
+                          s->vertex_start, s->anchored,     s->vertices,
+                          s->joint_bodies, s->joint_points, {number(b, 1), number(b, 1)}};
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length);
