@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from paper import CROSS, drawn, encoded, ink, lit, off_box, off_ring
+from sheets import CROSS, drawn, encoded, ink, lit, off_box, off_ring
 
 from sim.scene import InputError
 from sketch.ink import Sketch
