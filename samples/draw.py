@@ -414,7 +414,7 @@ def files() -> dict[str, str]:
 def pictures() -> dict[str, bytes]:
     """The pictures of paper by name, encoded."""
     import cv2
-    from paper import picture
+    from on_paper import picture
 
     out = {}
     for name, (machine_name, kind) in PICTURES.items():

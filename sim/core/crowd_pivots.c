@@ -7,7 +7,8 @@
 
 #include <stdlib.h>
 
-static const double GIVE = 4e-4; /* of a row's diagonal: loops, and chains drawn taut, say the same thing more than once */
+static const double GIVE =
+    4e-4; /* of a row's diagonal: loops, and chains drawn taut, say the same thing more than once */
 
 int pivots_create(Pivots *pivots, const World *world) {
     size_t n = (size_t)world->joint_count + 1;
