@@ -17,8 +17,8 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE.parent / "samples")]
 
 import draw  # noqa: E402
-from page import Page  # noqa: E402
 from on_paper import picture  # noqa: E402
+from page import Page  # noqa: E402
 
 from cli.render.canvas import Canvas  # noqa: E402
 from cli.render.overlay import overlay  # noqa: E402
