@@ -95,11 +95,13 @@ def is_scene(data: bytes) -> bool:
     return kind_of(data) == "scene"
 
 
-def recognize_bytes(data: bytes, scale: float | None = None, readings: Readings = ()) -> Recognition:
-    """Read ink and understand it."""
+def recognize_bytes(
+    data: bytes, scale: float | None = None, readings: Readings = (), page: int = 1, stages: str | None = None
+) -> Recognition:
+    """Read ink and understand it. page: of a PDF. stages: a folder for pictures of what was seen."""
     from sketch import load_sketch, recognize
 
-    sketch = load_sketch(data)
+    sketch = load_sketch(data, page=page, stages=stages)
     if scale is not None:
         sketch = dataclasses.replace(sketch, pixels_per_metre=scale)
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from cli.arguments import number, reading
+from cli.arguments import number, reading, whole_number
 from cli.outputs import STDOUT, Outputs, check_outputs
 
 __all__ = ["READ_HELP", "configure"]
@@ -38,6 +38,14 @@ def configure(p: argparse.ArgumentParser) -> None:
     p.add_argument(
         "--read", action="append", default=[], type=reading, metavar="STROKES=KIND", help=READ_HELP
     )
+    p.add_argument(
+        "--page", type=whole_number(1, 100_000), default=1, metavar="N", help="of a PDF; the first without it"
+    )
+    p.add_argument(
+        "--stages",
+        metavar="DIR",
+        help="pictures of what was seen on a picture: page, mask, skeleton, strokes",
+    )
     p.set_defaults(run=run)
 
 
@@ -54,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
     data = read(options.input)
     if is_scene(data):
         raise InputError("", f"{options.input} is a scene already", "`sketchsim simulate` runs it")
-    recognition = recognize_bytes(data, options.scale, options.read)
+    recognition = recognize_bytes(data, options.scale, options.read, options.page, options.stages)
     for text in recognition.scene.notes:
         note(text)
     with Outputs() as files:

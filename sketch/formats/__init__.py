@@ -53,8 +53,15 @@ def kind_of(data: bytes) -> str:
     return "strokes"
 
 
-def load_sketch(source: str | os.PathLike[str] | bytes) -> Sketch:
+def load_sketch(
+    source: str | os.PathLike[str] | bytes, *, page: int = 1, stages: str | os.PathLike[str] | None = None
+) -> Sketch:
     """Read a sketch from a file or from its bytes: stroke JSON, or a picture of paper.
+
+    Args:
+        source: a path, or what a file holds.
+        page: of a PDF file, from 1.
+        stages: a folder for pictures of what was seen on a picture, from page to strokes.
 
     Raises InputError, which names the bad element, for what is no sketch; OSError for a file that cannot be
     read.
@@ -75,7 +82,7 @@ def load_sketch(source: str | os.PathLike[str] | bytes) -> Sketch:
     if kind == "picture":
         from sketch.scan import read_picture
 
-        return read_picture(data)
+        return read_picture(data, page=page, stages=stages)
     if kind == "scene":
         raise InputError("", "this is a scene, not a sketch", "a scene needs no recognition: simulate it")
     if kind == "quickdraw":
@@ -86,4 +93,8 @@ def load_sketch(source: str | os.PathLike[str] | bytes) -> Sketch:
         from sketch.formats import excalidraw
 
         return excalidraw.read(data)
+    if kind == "unknown":
+        raise InputError(
+            "line 1 column 1", "not JSON, and no picture either", "strokes are JSON; pictures PNG, JPEG, WebP"
+        )
     return strokes.read(data)

@@ -166,3 +166,12 @@ def test_overlay_reduces_large_pictures_and_keeps_their_form() -> None:
 def test_overlay_of_a_page_without_size_shows_all_ink() -> None:
     ink = Sketch([Stroke(np.array(line((20, 30), (300, 100))))])
     assert overlay(Recognition(ink, Scene(), [])).planes[0].shape == (120, 320, 3)
+
+
+def test_stages_show_what_was_seen_on_a_picture(tmp_path: Path) -> None:
+    paper = Path(__file__).resolve().parents[2] / "samples" / "pendulum-on-paper.jpg"
+    out = tmp_path / "scene.json"
+    assert main(["recognize", str(paper), "-o", str(out), "--stages", str(tmp_path / "seen")]) == 0
+    seen = sorted(path.name for path in (tmp_path / "seen").iterdir())
+    assert seen == ["1-page.png", "2-mask.png", "3-skeleton.png", "4-strokes.png"]
+    assert all(cv2.imread(str(tmp_path / "seen" / name)) is not None for name in seen)
