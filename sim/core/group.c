@@ -5,7 +5,7 @@
 #include "exact.h"
 #include "stopwatch.h"
 
-#define MOST_CONTACTS 12       /* of a group in motion: beyond that the crowd is cheaper */
+#define MOST_CONTACTS 10       /* of a group in motion: beyond that the crowd is cheaper */
 #define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
 #define BOUNCE 0.1             /* bounces lower than this part of the tolerance are not followed */
 
