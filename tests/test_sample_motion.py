@@ -77,7 +77,7 @@ def test_pivots_hold(name: str) -> None:
             c, s = np.cos(turned), np.sin(turned)
             arms = np.stack([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]], axis=1)
             ends.append(run.positions[:, k] + arms)
-        assert np.max(np.hypot(*(ends[0] - ends[1]).T)) < PIXEL, "no pivot opens that one could see"
+        assert np.max(np.hypot(*(ends[0] - ends[1]).T)) < 1e-4, "pivots hold to the tolerance"
 
 
 @pytest.mark.parametrize("name", AT_REST)
@@ -143,7 +143,7 @@ def test_funnel_all_bodies_end_in_the_bin() -> None:
     assert len(moving) == 18
     end = run.positions[-1, moving] / (PIXEL, -PIXEL)
     assert np.all((end[:, 0] > 270) & (end[:, 0] < 1010) & (end[:, 1] < 680) & (end[:, 1] > 500))
-    assert np.max(np.abs(run.velocities[-1])) < 0.2, "at most a ball still rolls slowly"
+    assert np.max(np.abs(run.velocities[-1])) < 0.05, "at most a ball still rolls slowly"
 
 
 def test_marbles_end_in_the_cup() -> None:
