@@ -12,7 +12,7 @@ from cli.arguments import UsageError
 __all__ = ["configure"]
 
 SUBJECTS = ("physics", "stress", "recognition", "pipeline")
-ROOT = Path(__file__).resolve().parents[2]  # of the source; an installed package has no benchmarks beside it
+SOURCE = Path(__file__).resolve().parents[2]  # or, of an installed package, a folder without benchmarks
 
 
 def configure(p: argparse.ArgumentParser) -> None:
@@ -26,13 +26,15 @@ def configure(p: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    if not (ROOT / "tests" / "benchmarks" / f"{options.subject}.py").is_file():
+    benchmark = Path("tests", "benchmarks", f"{options.subject}.py")
+    root = next((folder for folder in (SOURCE, Path.cwd()) if (folder / benchmark).is_file()), None)
+    if root is None:
         raise UsageError(
-            f"bench {options.subject}: its benchmark is not in {ROOT}",
-            "run `python -m cli` in the project's source",
+            f"bench {options.subject}: its benchmark is neither in {SOURCE} nor here",
+            "run it in the project's source folder",
         )
-    if str(ROOT) not in sys.path:
-        sys.path.insert(0, str(ROOT))
-    benchmark = importlib.import_module(f"tests.benchmarks.{options.subject}")
-    status: int = benchmark.main(options.rest)
+    if str(root) not in sys.path:
+        sys.path.append(str(root))  # last: what is measured is what is installed
+    module = importlib.import_module(f"tests.benchmarks.{options.subject}")
+    status: int = module.main(options.rest)
     return status
