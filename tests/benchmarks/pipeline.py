@@ -100,7 +100,8 @@ def main(argv: list[str]) -> int:
     )
     parser.add_argument("--sketches", type=int, default=200, help="in the batch")
     options = parser.parse_args(argv)
-    os.chdir(ROOT)
+    # The processes run the package that runs this, be it the source or an installed one.
+    os.chdir(Path(sys.modules["cli"].__file__ or "").resolve().parents[1] if "cli" in sys.modules else ROOT)
     with tempfile.TemporaryDirectory() as folder:
         videos(Path(folder), options.runs)
         data(Path(folder), options.runs)
