@@ -20,6 +20,7 @@ __all__ = ["arrow_groups", "closing_chains", "crosses"]
 MOST_PARTS = 6  # of one outline: people draw a box in one to five strokes
 LOOSE = 0.3  # gaps of a chain, as a share of its ink, overshoots counted as gaps
 MOST_STEPS = 400  # from one piece, of chains that may close
+MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
 MOST_CHAINS = 6  # a piece on the page that are fitted, the tightest first
 CHOICES = 6  # ends that a chain may go on to
 HEADS = 4  # strokes near a shaft's end that are tried as its head
@@ -96,6 +97,8 @@ def crosses(page: Page, complete: Set[int] = frozenset()) -> Iterator[tuple[int,
             yield (p.index,)
     bars = [p for p in page.pieces if p.length < 3 * p.extent]
     bars.sort(key=lambda p: p.box[0])
+    crossing: dict[int, list[tuple[float, tuple[int, int]]]] = {p.index: [] for p in bars}
+    pairs = []
     for a, p in enumerate(bars):
         for q in bars[a + 1 :]:
             if q.box[0] > p.box[2]:
@@ -103,7 +106,13 @@ def crosses(page: Page, complete: Set[int] = frozenset()) -> Iterator[tuple[int,
             if not (_is_bar(p) or _is_bar(q)) or max(p.extent, q.extent) > 3 * min(p.extent, q.extent):
                 continue
             if p.box[1] <= q.box[3] and q.box[1] <= p.box[3]:
-                yield (p.index, q.index) if p.index < q.index else (q.index, p.index)
+                pair = (p.index, q.index) if p.index < q.index else (q.index, p.index)
+                unlike = abs(math.log(max(p.extent, 1e-9) / max(q.extent, 1e-9)))
+                crossing[p.index].append((unlike, pair))
+                crossing[q.index].append((unlike, pair))
+                pairs.append(pair)
+    alike = {pair for found in crossing.values() for _, pair in sorted(found)[:MOST_CROSSED]}
+    yield from (pair for pair in pairs if pair in alike)
 
 
 def _is_bar(p: Piece) -> bool:
