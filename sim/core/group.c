@@ -407,7 +407,7 @@ int group_reform(Exact *e, double time) {
     }
     e->world->profile.impact_time += seconds_now() - start;
     if (status == SIM_OK && made_energy(e, energy, time)) status = SIM_BAD_INPUT;
-    if (status == SIM_BAD_INPUT) { /* contacts that admit no rigid motion: the crowd's soft ones do */
+    if (status == SIM_BAD_INPUT) { /* contacts that admit no rigid motion: the crowd's, met one after another, do */
         group_send_to_crowd(e, time);
         return SIM_OK;
     }
