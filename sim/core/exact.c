@@ -353,7 +353,6 @@ int exact_hand_over(Exact *e, int32_t body, double time) {
     system_clear(&e->group);
     int status = group_gather(e, body, time);
     group_send_to_crowd(e, time);
-    find_touches(e, time);
     return status;
 }
 

@@ -72,22 +72,31 @@ static int32_t crowd_size(const World *world) {
     return count;
 }
 
-/* Bodies that come near the crowd within a step belong to it. */
+/* Whether a body comes near one of the crowd between two times. */
+static bool meets_crowd(const Sim *sim, int32_t body, double from, double to) {
+    const World *world = &sim->world;
+    State a = exact_state(&sim->exact, body, from), b = exact_state(&sim->exact, body, to);
+    double way = vlength(vsub(b.p, a.p)) + world->body[body].reach;
+    for (int32_t j = 1; j < world->body_count; j++) {
+        const Body *other = &world->body[j];
+        if (other->mode != MODE_CROWD) continue;
+        double near = way + other->reach + 2 * vlength(other->velocity) * (to - from) + 0.1 * other->reach;
+        if (vlength(vsub(other->position, a.p)) <= near) return true;
+    }
+    return false;
+}
+
+/* Bodies that come near the crowd within a step belong to it, and so do those that come near these. */
 static int absorb(Sim *sim, double from, double to) {
     World *world = &sim->world;
-    for (int32_t i = 1; i < world->body_count; i++) {
-        Mode mode = world->body[i].mode;
-        if (mode != MODE_FLIGHT && mode != MODE_SMOOTH) continue;
-        State a = exact_state(&sim->exact, i, from), b = exact_state(&sim->exact, i, to);
-        double way = vlength(vsub(b.p, a.p)) + world->body[i].reach;
-        for (int32_t j = 1; j < world->body_count; j++) {
-            const Body *other = &world->body[j];
-            if (other->mode != MODE_CROWD) continue;
-            double near = way + other->reach + 2 * vlength(other->velocity) * (to - from) + 0.1 * other->reach;
-            if (vlength(vsub(other->position, a.p)) > near) continue;
+    for (bool any = true; any;) {
+        any = false;
+        for (int32_t i = 1; i < world->body_count; i++) {
+            Mode mode = world->body[i].mode;
+            if ((mode != MODE_FLIGHT && mode != MODE_SMOOTH) || !meets_crowd(sim, i, from, to)) continue;
             int status = exact_hand_over(&sim->exact, i, from);
             if (status != SIM_OK) return status;
-            break;
+            any = true;
         }
     }
     return SIM_OK;
