@@ -51,6 +51,8 @@ struct Crowd {
     int32_t near_count, near_capacity;
     Near *last_near; /* of the frame before, with their gaps when it ended */
     Index last_index;
+    Vec *end; /* by body: where it was when that frame ended */
+    double *end_angle;
     Contact *contact;
     int32_t contact_count, contact_capacity;
     Memory memory;

@@ -47,6 +47,9 @@ int touch_create(Crowd *crowd, const World *world) {
     crowd->start_angle = table(bodies, sizeof *crowd->start_angle);
     crowd->body_swing = table(bodies, sizeof *crowd->body_swing);
     crowd->lead = table(bodies, sizeof *crowd->lead);
+    crowd->end = table(bodies, sizeof *crowd->end);
+    crowd->end_angle = table(bodies, sizeof *crowd->end_angle);
+    if (!crowd->end || !crowd->end_angle) return SIM_OUT_OF_MEMORY;
     if (!crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves ||
         !crowd->range || !crowd->start_angle || !crowd->body_swing || !crowd->lead)
         return SIM_OUT_OF_MEMORY;
@@ -71,6 +74,8 @@ void touch_destroy(Crowd *crowd) {
     free(crowd->start_angle);
     free(crowd->body_swing);
     free(crowd->lead);
+    free(crowd->end);
+    free(crowd->end_angle);
     index_destroy(&crowd->known);
     index_destroy(&crowd->last_index);
     free(crowd->last_near);
@@ -226,6 +231,13 @@ static double box_gap(const Box *a, const Box *b, Vec *normal) {
     return larger(x, y);
 }
 
+/* Whether a body is where the last frame left it: it may have been in other motion since. */
+static bool came_straight(const Crowd *crowd, const World *world, int32_t body) {
+    const Body *b = &world->body[body];
+    Vec end = crowd->end[body];
+    return b->position.x == end.x && b->position.y == end.y && b->angle == crowd->end_angle[body];
+}
+
 static int consider(Crowd *crowd, World *world, Near near, double dt, double substep, bool *woke) {
     if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (contact_room(crowd, crowd->contact_count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
@@ -236,7 +248,7 @@ static int consider(Crowd *crowd, World *world, Near near, double dt, double sub
     double gap = box_gap(&crowd->piece_box[near.piece_a], &crowd->piece_box[near.piece_b], &normal);
     set_near(crowd, &near, normal, gap);
     int32_t last = gap <= soon ? index_find(&crowd->last_index, pair_key(near.piece_a, near.piece_b)) : -1;
-    if (last >= 0) { /* it holds for where the frame starts */
+    if (last >= 0 && came_straight(crowd, world, near.a) && came_straight(crowd, world, near.b)) {
         Near before = near;
         before.normal = crowd->last_near[last].normal;
         before.gap = crowd->last_near[last].gap;
@@ -498,6 +510,12 @@ int touch_finish(Crowd *crowd, const World *world, double dt) {
         Near *near = &crowd->near[i];
         near->gap = gap_now(crowd, near);
         index_add(&crowd->last_index, pair_key(near->piece_a, near->piece_b), i);
+    }
+    for (int32_t i = 0; i < world->body_count; i++) {
+        const Body *b = &world->body[i];
+        const Mover *m = &crowd->mover[i];
+        crowd->end[i] = vadd(b->position, m->moved);
+        crowd->end_angle[i] = b->angle + m->turned;
     }
     Near *swap = crowd->last_near;
     crowd->last_near = crowd->near;
