@@ -12,6 +12,7 @@ __all__ = [
     "Parser",
     "PrintVersion",
     "UsageError",
+    "add_input_options",
     "number",
     "picture_size",
     "reading",
@@ -120,3 +121,21 @@ def reading(text: str) -> tuple[tuple[int, ...], str]:
     if not equals or re.fullmatch(r"\d+(,\d+)*", strokes) is None:
         raise argparse.ArgumentTypeError(f"{text!r} is not STROKES=KIND, as 3,4=anchor")
     return tuple(int(k) for k in strokes.split(",")), kind.strip()
+
+
+def add_input_options(p: argparse.ArgumentParser) -> None:
+    """The options that say how a drawing is read."""
+    p.add_argument(
+        "--scale", type=number(0, 1e9), metavar="PX_PER_M", help="pixels of the drawing in a metre"
+    )
+    p.add_argument(
+        "--read", action="append", default=[], type=reading, metavar="STROKES=KIND",
+        help="what strokes are, as 3,4=anchor or 9=ignore; may be given several times",
+    )  # fmt: skip
+    p.add_argument(
+        "--page", type=whole_number(1, 100_000), default=1, metavar="N", help="of a PDF; the first without it"
+    )
+    p.add_argument(
+        "--index", type=whole_number(0, 999_999_999), metavar="K",
+        help="which drawing of a file with many (Quick, Draw!), from 0; the first without it",
+    )  # fmt: skip

@@ -13,14 +13,34 @@ from cli.arguments import UsageError
 from sim.scene import InputError, Scene
 
 if TYPE_CHECKING:
+    import argparse
+
     from sketch.recognize import Recognition
 
-__all__ = ["Loaded", "load", "load_bytes", "naming", "read", "recognize_bytes"]
-
-Readings = Sequence[tuple[tuple[int, ...], str]]
+__all__ = ["Loaded", "Way", "load", "load_bytes", "naming", "read", "recognize_bytes"]
 
 STDIN = "-"
 MAX_BYTES = 64 << 20  # of any input: a photo of 12 megapixels has 2 to 15 MB
+
+
+@dataclass(frozen=True)
+class Way:
+    """How a drawing is to be read.
+
+    scale: the ink's pixels per metre.  readings: what some strokes are, by their numbers.  page: of a PDF, from
+    1.  index: of a file with many drawings, from 0.  stages: a folder for pictures of what was seen on a picture.
+    """
+
+    scale: float | None = None
+    readings: Sequence[tuple[tuple[int, ...], str]] = ()
+    page: int = 1
+    index: int | None = None
+    stages: str | None = None
+
+    @classmethod
+    def of(cls, options: argparse.Namespace) -> Way:
+        """From the options of add_input_options."""
+        return cls(options.scale, options.read, options.page, options.index, getattr(options, "stages", None))
 
 
 @dataclass(frozen=True)
@@ -52,26 +72,23 @@ def _check_size(data: bytes, source: str) -> bytes:
     return data
 
 
-def load(source: str, scale: float | None = None, readings: Readings = ()) -> Loaded:
-    """The scene that `source` holds or shows.
-
-    scale: the ink's pixels per metre.  readings: what some strokes are, by their numbers.
-    """
-    return load_bytes(read(source), source, scale, readings)
+def load(source: str, way: Way) -> Loaded:
+    """The scene that `source` holds or shows."""
+    return load_bytes(read(source), source, way)
 
 
-def load_bytes(data: bytes, source: str, scale: float | None = None, readings: Readings = ()) -> Loaded:
+def load_bytes(data: bytes, source: str, way: Way) -> Loaded:
     """The scene that an input's bytes hold or show."""
     if is_scene(data):
-        if scale is not None:
+        if way.scale is not None:
             raise UsageError(
                 f"--scale: {source} is a scene, which is in metres already",
                 "--scale is for strokes and pictures",
             )
-        if readings:
+        if way.readings:
             raise UsageError(f"--read: {source} is a scene, without strokes", "edit the scene itself")
         return Loaded(Scene.from_json(data))
-    recognition = recognize_bytes(data, scale, readings)
+    recognition = recognize_bytes(data, way)
     return Loaded(recognition.scene, recognition)
 
 
@@ -95,17 +112,15 @@ def is_scene(data: bytes) -> bool:
     return kind_of(data) == "scene"
 
 
-def recognize_bytes(
-    data: bytes, scale: float | None = None, readings: Readings = (), page: int = 1, stages: str | None = None
-) -> Recognition:
-    """Read ink and understand it. page: of a PDF. stages: a folder for pictures of what was seen."""
+def recognize_bytes(data: bytes, way: Way) -> Recognition:
+    """Read ink and understand it."""
     from sketch import load_sketch, recognize
 
-    sketch = load_sketch(data, page=page, stages=stages)
-    if scale is not None:
-        sketch = dataclasses.replace(sketch, pixels_per_metre=scale)
+    sketch = load_sketch(data, page=way.page, index=way.index, stages=way.stages)
+    if way.scale is not None:
+        sketch = dataclasses.replace(sketch, pixels_per_metre=way.scale)
     try:
-        return recognize(sketch, overrides=dict(readings))
+        return recognize(sketch, overrides=dict(way.readings))
     except InputError as e:
         if e.path.startswith("overrides["):  # what the command calls --read
             raise UsageError(f"--read {e.path[10:-1]}: {e.problem}", e.hint) from None

@@ -10,7 +10,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cli.arguments import UsageError, whole_number
+from cli.arguments import UsageError, number, whole_number
 from cli.commands.simulate import add_run_options, check_samples
 from cli.results import DATA
 
@@ -56,6 +56,9 @@ def configure(p: argparse.ArgumentParser) -> None:
     )
     p.add_argument("--data", choices=[kind[1:] for kind in DATA], default="npz", help="form of the motions")
     add_run_options(p)
+    p.add_argument(
+        "--scale", type=number(0, 1e9), metavar="PX_PER_M", help="pixels of the drawings in a metre"
+    )
     p.add_argument("--workers", type=whole_number(1, 1024), metavar="N", help="processes (one a core)")
     p.add_argument("--scheduler", metavar="ADDRESS", help="run on this cluster of dask.distributed instead")
     p.add_argument("-q", "--quiet", action="store_true", help="no notes and no progress")
@@ -149,14 +152,14 @@ def _is_one_a_line(data: bytes) -> bool:
 def work(task: Task, settings: dict[str, Any]) -> Done:
     """Read and run one task. Errors of the input are part of the result; it runs in any process."""
     from cli.commands.simulate import motion_of
-    from cli.inputs import is_scene, load_bytes, read
+    from cli.inputs import Way, is_scene, load_bytes, read
     from sim.scene import InputError
 
     options = argparse.Namespace(**settings)
     notes: list[str] = []
     try:
         data = read(task.source) if task.line is None else task.line
-        loaded = load_bytes(data, task.source, None if is_scene(data) else options.scale)
+        loaded = load_bytes(data, task.source, Way(None if is_scene(data) else options.scale))
         motion = motion_of(loaded, options, notes.append)
     except (InputError, RuntimeError) as e:
         return Done(task.name, {}, notes, str(e), getattr(e, "hint", ""))

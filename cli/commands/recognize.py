@@ -5,12 +5,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-from cli.arguments import number, reading, whole_number
+from cli.arguments import add_input_options
 from cli.outputs import STDOUT, Outputs, check_outputs
 
-__all__ = ["READ_HELP", "configure"]
+__all__ = ["configure"]
 
-READ_HELP = "what strokes are, as 3,4=anchor or 9=ignore; may be given several times"
 EPILOG = """\
 examples:
   sketchsim recognize cart.json                    the scene as JSON on standard output
@@ -32,15 +31,7 @@ def configure(p: argparse.ArgumentParser) -> None:
     p.add_argument(
         "--explain", action="store_true", help="say of every reading why it is this and not the next"
     )
-    p.add_argument(
-        "--scale", type=number(0, 1e9), metavar="PX_PER_M", help="pixels of the drawing in a metre"
-    )
-    p.add_argument(
-        "--read", action="append", default=[], type=reading, metavar="STROKES=KIND", help=READ_HELP
-    )
-    p.add_argument(
-        "--page", type=whole_number(1, 100_000), default=1, metavar="N", help="of a PDF; the first without it"
-    )
+    add_input_options(p)
     p.add_argument(
         "--stages",
         metavar="DIR",
@@ -55,14 +46,14 @@ def run(options: argparse.Namespace) -> int:
         check_outputs([output], (".json",), [options.input])
     if options.overlay is not None:
         check_outputs([options.overlay], (".png",), [options.input])
-    from cli.inputs import is_scene, read, recognize_bytes
+    from cli.inputs import Way, is_scene, read, recognize_bytes
     from cli.progress import note
     from sim.scene import InputError
 
     data = read(options.input)
     if is_scene(data):
         raise InputError("", f"{options.input} is a scene already", "`sketchsim simulate` runs it")
-    recognition = recognize_bytes(data, options.scale, options.read, options.page, options.stages)
+    recognition = recognize_bytes(data, Way.of(options))
     for text in recognition.scene.notes:
         note(text)
     with Outputs() as files:

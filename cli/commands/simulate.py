@@ -11,8 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cli.arguments import UsageError, number, picture_size, reading, vector
-from cli.commands.recognize import READ_HELP
+from cli.arguments import UsageError, add_input_options, number, picture_size, vector
 from cli.outputs import STDOUT, Outputs, check_outputs
 from cli.results import ENDINGS, Look, Run
 
@@ -59,6 +58,7 @@ def configure(p: argparse.ArgumentParser) -> None:
         help="file to write, may be given several times (default: the input's name, .mp4, in this folder)",
     )  # fmt: skip
     add_run_options(p)
+    add_input_options(p)
     look = p.add_argument_group("look")
     look.add_argument(
         "--size", type=picture_size, default=(1280, 720), metavar="WxH", help="pixels (default: 1280x720)"
@@ -99,12 +99,6 @@ def add_run_options(p: argparse.ArgumentParser) -> None:
     )
     p.add_argument(
         "--gravity", type=_gravity, metavar="none|down|GX,GY", help="instead of what was drawn [m/s², y up]"
-    )
-    p.add_argument(
-        "--scale", type=number(0, 1e9), metavar="PX_PER_M", help="pixels of the drawing in a metre"
-    )
-    p.add_argument(
-        "--read", action="append", default=[], type=reading, metavar="STROKES=KIND", help=READ_HELP
     )
 
 
@@ -148,10 +142,10 @@ def run_of(
     source: str, options: argparse.Namespace, tell: Callable[[str], object], progress: Progress
 ) -> Run:
     """Read an input and simulate it; `tell` is given the notes."""
-    from cli.inputs import load
+    from cli.inputs import Way, load
 
     progress.say("reading")
-    loaded = load(source, options.scale, options.read)
+    loaded = load(source, Way.of(options))
     look = _look(options, loaded.scene)
     progress.say("simulating")
     motion = motion_of(loaded, options, tell)

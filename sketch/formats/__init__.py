@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 from sim.scene import InputError
@@ -27,23 +28,35 @@ _PICTURES = [
     (0, b"%PDF"),
 ]
 
+# The name of the outermost element, after declarations, comments and the document type.
+_ROOT = re.compile(
+    rb"(<\?.*?\?>|<!--.*?-->|<!DOCTYPE(?:[^\[>]|\[.*?\]\s*)*>|\s)*<(?:[\w.-]+:)?([\w.-]+)", re.S
+)
+
 
 def kind_of(data: bytes) -> str:
-    """What some input is, by its content: "strokes", "scene", "picture", "quickdraw", "excalidraw" or "unknown".
+    """What some input is, by its content: "strokes", "scene", "picture", "quickdraw", "excalidraw", "svg", "inkml" or
+    "unknown".
 
     JSON is told by its keys without parsing it: a scene has "bodies", a sketch "strokes"; a file that has
-    both says what it is in "format".
+    both says what it is in "format".  XML is told by its outermost element.
     """
     if any(data[at : at + len(magic)] == magic for at, magic in _PICTURES):
         return "picture"
-    head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    head = data[:4096]
+    if head[:2] in (b"\xff\xfe", b"\xfe\xff"):  # XML may be UTF-16
+        head = head.decode("utf-16", "ignore").encode()
+    head = head.lstrip(b"\xef\xbb\xbf \t\r\n")
+    if head[:1] == b"<":
+        root = _ROOT.match(head)
+        return {b"svg": "svg", b"ink": "inkml"}.get(root[2] if root else b"", "unknown")
     if head[:1] not in (b"{", b"["):
         return "unknown"
     if b"sketchsim-scene" in head:
         return "scene"
     if b"sketchsim-strokes" in head:
         return "strokes"
-    if b'"excalidraw"' in head and b'"elements"' in data:
+    if b'"excalidraw' in head and b'"elements"' in data:
         return "excalidraw"
     if b'"drawing"' in head and b'"strokes"' not in head:
         return "quickdraw"
@@ -54,13 +67,18 @@ def kind_of(data: bytes) -> str:
 
 
 def load_sketch(
-    source: str | os.PathLike[str] | bytes, *, page: int = 1, stages: str | os.PathLike[str] | None = None
+    source: str | os.PathLike[str] | bytes,
+    *,
+    page: int = 1,
+    index: int | None = None,
+    stages: str | os.PathLike[str] | None = None,
 ) -> Sketch:
-    """Read a sketch from a file or from its bytes: stroke JSON, or a picture of paper.
+    """Read a sketch from a file or from its bytes: strokes in any of the formats here, or a picture of paper.
 
     Args:
         source: a path, or what a file holds.
         page: of a PDF file, from 1.
+        index: of a file with many drawings (Quick, Draw!), from 0.
         stages: a folder for pictures of what was seen on a picture, from page to strokes.
 
     Raises InputError, which names the bad element, for what is no sketch; OSError for a file that cannot be
@@ -88,13 +106,25 @@ def load_sketch(
     if kind == "quickdraw":
         from sketch.formats import quickdraw
 
-        return quickdraw.read(data)
+        return quickdraw.read(data, index)
+    if index:
+        raise InputError("", f"there is no drawing {index}: the input has one")
     if kind == "excalidraw":
         from sketch.formats import excalidraw
 
         return excalidraw.read(data)
+    if kind == "svg":
+        from sketch.formats import svg
+
+        return svg.read(data)
+    if kind == "inkml":
+        from sketch.formats import inkml
+
+        return inkml.read(data)
     if kind == "unknown":
         raise InputError(
-            "line 1 column 1", "not JSON, and no picture either", "strokes are JSON; pictures PNG, JPEG, WebP"
+            "line 1 column 1",
+            "not JSON, SVG or InkML, and no picture either",
+            "drawings: JSON, Excalidraw, Quick, Draw!, SVG, InkML; pictures: PNG, JPEG, WebP, TIFF, HEIC, PDF",
         )
     return strokes.read(data)

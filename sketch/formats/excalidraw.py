@@ -1,19 +1,24 @@
-"""Excalidraw files: free-hand strokes, lines and arrows as they are; its ready shapes as the outlines that
-they show."""
+"""Excalidraw files: free-hand strokes, lines and arrows as they are shown, its ready shapes as their outlines.
+
+Corners that the program rounds are taken as sharp: its rounding is an ornament, not the person's line.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import msgspec
 
 from sim.scene import InputError, parse_json
-from sketch.formats import strokes
+from sketch.formats import arrows, strokes
 from sketch.ink import Sketch
 
 __all__ = ["read"]
 
 Point = tuple[float, float]
+
+PIECES = 12  # straight pieces of a curve between two of its points
 
 
 class _Element(msgspec.Struct):
@@ -24,6 +29,9 @@ class _Element(msgspec.Struct):
     height: float = 0.0
     angle: float = 0.0  # [rad], clockwise as seen, about the middle
     points: list[list[float]] = []
+    roundness: dict[str, Any] | None = None
+    startArrowhead: str | None = None
+    endArrowhead: str | msgspec.UnsetType | None = msgspec.UNSET
     isDeleted: bool = False
 
 
@@ -36,10 +44,7 @@ def read(data: bytes) -> Sketch:
     found: list[list[Point]] = []
     left: dict[str, int] = {}
     for i, one in enumerate(raw):
-        try:
-            element = msgspec.convert(one, _Element)
-        except msgspec.ValidationError as e:
-            raise InputError(f"elements[{i}]", str(e).split(" - at ")[0]) from None
+        element = _element(one, f"elements[{i}]")
         if element.isDeleted:
             continue
         drawn = _drawn(element)
@@ -51,14 +56,40 @@ def read(data: bytes) -> Sketch:
     return sketch
 
 
+def _element(one: Any, path: str) -> _Element:
+    try:
+        element = msgspec.convert(one, _Element)
+    except msgspec.ValidationError as e:
+        problem, _, inside = str(e).partition(" - at `$")
+        problem = problem[:1].lower() + problem[1:].replace("`", "")
+        raise InputError(path + inside.rstrip("`"), problem) from None
+    numbers = {name: getattr(element, name) for name in ("x", "y", "width", "height", "angle")}
+    numbers |= {f"points[{k}]": math.fsum(map(abs, point)) for k, point in enumerate(element.points)}
+    for name, value in numbers.items():
+        if not math.isfinite(value):
+            raise InputError(f"{path}.{name}", "not a finite number")
+    return element
+
+
 def _drawn(e: _Element) -> list[list[Point]]:
     """An element's strokes on the page [pixels]."""
     w, h = e.width, e.height
+    mx, my = w / 2, h / 2
     if e.type in ("freedraw", "line", "arrow"):
         path = [(p[0], p[1]) for p in e.points if len(p) > 1]
+        if not path:
+            return []
+        if e.roundness is not None and e.type != "freedraw":
+            path = _smooth(path)
+        # These turn about the middle of what is drawn; their points count from the first one.
+        mx, my = (((min(column) + max(column)) / 2) for column in zip(*path, strict=True))
         strokes_of = [path]
-        if e.type == "arrow" and len(path) > 1:
-            strokes_of.append(_head(path[-2], path[-1]))
+        end = e.endArrowhead
+        if end is msgspec.UNSET:
+            end = "arrow" if e.type == "arrow" else None
+        for tip, shaft in ((e.startArrowhead, path[::-1]), (end, path)):
+            if tip is not None and len(path) > 1:
+                strokes_of.append(arrows.head(shaft[-2], shaft[-1]))
     elif e.type == "rectangle":
         strokes_of = [[(0, 0), (w, 0), (w, h), (0, h), (0, 0)]]
     elif e.type == "diamond":
@@ -69,18 +100,26 @@ def _drawn(e: _Element) -> list[list[Point]]:
     else:
         return []
     c, s = math.cos(e.angle), math.sin(e.angle)
-    mx, my = w / 2, h / 2
     return [
         [(e.x + mx + c * (x - mx) - s * (y - my), e.y + my + s * (x - mx) + c * (y - my)) for x, y in stroke]
         for stroke in strokes_of
+        if stroke
     ]
 
 
-def _head(before: Point, tip: Point) -> list[Point]:
-    """The head that an arrow is shown with: two barbs at 30 degrees."""
-    dx, dy = before[0] - tip[0], before[1] - tip[1]
-    out = []
-    for angle in (math.pi / 6, -math.pi / 6):
-        c, s = 0.35 * math.cos(angle), 0.35 * math.sin(angle)
-        out.append((tip[0] + c * dx - s * dy, tip[1] + s * dx + c * dy))
-    return [out[0], tip, out[1]]
+def _smooth(path: list[Point]) -> list[Point]:
+    """The curve through the points that rounded lines are shown as: Catmull and Rom's."""
+    if len(path) < 3:
+        return path
+    out = [path[0]]
+    for k in range(len(path) - 1):
+        a, b, c, d = (path[min(max(k + i, 0), len(path) - 1)] for i in (-1, 0, 1, 2))
+        for step in range(1, PIECES + 1):
+            t = step / PIECES
+            out.append((_through(a[0], b[0], c[0], d[0], t), _through(a[1], b[1], c[1], d[1], t)))
+    return out
+
+
+def _through(a: float, b: float, c: float, d: float, t: float) -> float:
+    """One coordinate between b and c; a and d are the neighbours before and after."""
+    return b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)))

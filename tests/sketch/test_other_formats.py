@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 
+import numpy as np
 import pytest
 
 from sim.scene import InputError
@@ -24,6 +25,22 @@ def test_quickdraw() -> None:
     ]
     assert [r.kind for r in recognize(sketch).readings] == ["rectangle"]
     assert load_sketch(quickdraw(box, box)).notes == ["the first of 2 drawings was read"]
+
+
+def test_quickdraw_has_the_drawing_that_is_asked_for() -> None:
+    """Raw drawings have times in a third column, simplified ones none; both are counted from 0."""
+    raw, simple = [[[5.5, 60], [5, 5], [0, 8]]], [[[7, 70], [7, 7]]]
+    data = quickdraw(raw, simple)
+    first, second = (load_sketch(data, index=k) for k in (0, 1))
+    assert first.strokes[0].points.tolist() == [[5.5, 5], [60, 5]]
+    assert first.strokes[0].times is not None
+    assert second.strokes[0].points.tolist() == [[7, 7], [70, 7]]
+    assert second.notes == []
+    with pytest.raises(InputError) as e:
+        load_sketch(data, index=2)
+    assert (str(e.value), e.value.hint) == ("there is no drawing 2", "drawings are 0 to 1")
+    with pytest.raises(InputError, match="line 2 column"):
+        load_sketch(quickdraw(raw) + b'\n{"drawing": [', index=1)
 
 
 @pytest.mark.parametrize(
@@ -65,11 +82,57 @@ def test_excalidraw() -> None:
     assert math.remainder(slope.angle + 0.2, math.pi) == pytest.approx(0, abs=0.02)
 
 
+def points(*elements: dict[str, object]) -> list[np.ndarray]:
+    return [stroke.points for stroke in load_sketch(excalidraw(*elements)).strokes]
+
+
+def test_lines_of_excalidraw_turn_about_the_middle_of_what_is_drawn() -> None:
+    """Their points count from the first one, wherever in the box that is."""
+    line = {"type": "line", "x": 100, "y": 100, "points": [[0, 0], [-40, 0], [-40, -20]], "angle": math.pi}
+    (turned,) = points(line)
+    np.testing.assert_allclose(turned, [[60, 80], [100, 80], [100, 100]], atol=1e-9)
+
+
+def test_rounded_lines_of_excalidraw_are_curves_through_their_points() -> None:
+    through = [[0, 0], [50, 80], [100, 0], [150, -80]]
+    (curve,) = points({"type": "line", "points": through, "roundness": {"type": 2}})
+    for point in through:
+        assert np.hypot(*(curve - point).T).min() < 1e-9
+    turns = np.diff(np.unwrap(np.arctan2(*np.diff(curve, axis=0).T)))
+    assert np.abs(turns).max() < 0.7  # the points themselves turn by 2
+
+
+@pytest.mark.parametrize(
+    ("heads", "tips"),
+    [
+        ({}, [[100, 0]]),
+        ({"endArrowhead": "triangle"}, [[100, 0]]),
+        ({"endArrowhead": None}, []),
+        ({"startArrowhead": "arrow", "endArrowhead": "arrow"}, [[0, 0], [100, 0]]),
+    ],
+)
+def test_arrows_of_excalidraw_have_the_heads_that_are_shown(
+    heads: dict[str, object], tips: list[list[float]]
+) -> None:
+    shaft, *barbs = points({"type": "arrow", "points": [[0, 0], [100, 0]], **heads})
+    np.testing.assert_allclose(shaft, [[0, 0], [100, 0]])
+    assert [barb[1].tolist() for barb in barbs] == tips
+
+
+def test_a_clipboard_of_excalidraw() -> None:
+    data = excalidraw({"type": "line", "points": [[0, 0], [9, 9]]}).replace(
+        b'"excalidraw"', b'"excalidraw/clipboard"'
+    )
+    assert len(load_sketch(data).strokes) == 1
+
+
 @pytest.mark.parametrize(
     ("data", "path"),
     [
         (b'{"type": "excalidraw", "elements": 3}', "elements"),
-        (excalidraw({"type": "line", "points": 3}), "elements[0]"),
+        (excalidraw({"type": "line", "points": 3}), "elements[0].points"),
+        (excalidraw({"type": "line", "points": [[0, 0], [1, "2"]]}), "elements[0].points[1][1]"),
+        (excalidraw({"type": "rectangle", "x": float("nan")}), "elements[0].x"),
         (excalidraw({"type": "text"}), "strokes"),
     ],
 )
