@@ -6,7 +6,6 @@ import contextlib
 import json
 import math
 import os
-import tempfile
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -186,6 +185,8 @@ class Scene(msgspec.Struct, kw_only=True):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write scene JSON; an existing file is replaced only once the new one is whole."""
+        import tempfile  # it loads random, hashlib and every compressor
+
         folder = Path(path).resolve().parent
         fd, beside = tempfile.mkstemp(dir=folder, suffix=".json")
         try:

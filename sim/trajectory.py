@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import os
-import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -84,6 +82,8 @@ class Trajectory:
 
     def to_csv(self) -> bytes:
         """One row a time and body."""
+        import csv
+
         out = io.StringIO()
         write = csv.writer(out, lineterminator="\n")
         write.writerow(["time", "body", "x", "y", "angle", "vx", "vy", "angular_velocity"])
@@ -107,6 +107,8 @@ class Trajectory:
         """Read .npz or .json. Raises InputError for what is neither, OSError for what cannot be read."""
         data = Path(path).read_bytes()
         if data[:2] == b"PK":
+            import zipfile
+
             try:
                 with np.load(io.BytesIO(data), allow_pickle=False) as z:
                     return cls(body_ids=z["body_ids"].tolist(), **{name: z[name] for name in _ARRAYS})
