@@ -7,7 +7,6 @@ import os
 import re
 import signal
 import sys
-import threading
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
@@ -42,7 +41,7 @@ def build_parser(wanted: str | None = None) -> Parser:
     """The parser of the command line, with the options of all commands or of one; each one's import takes time."""
     parser = Parser(prog="sketchsim", description="Draw a machine, watch it run.", epilog=EPILOG)
     parser.add_argument("--version", action=PrintVersion)
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, prog="sketchsim")
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary)
         if wanted in (None, name):
@@ -111,11 +110,12 @@ def _join_negative_vectors(argv: Sequence[str]) -> list[str]:
 
 def _terminate_as_interrupt() -> Callable[[], object]:
     """Let SIGTERM unwind like Ctrl-C, so that nothing half-written stays behind; returns how to undo it."""
-    if threading.current_thread() is not threading.main_thread():
-        return lambda: None
 
     def interrupt(number: int, frame: object) -> NoReturn:
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        before = signal.signal(signal.SIGTERM, interrupt)
+    except ValueError:  # not in the main thread, which alone is told
+        return lambda: None
     return lambda: signal.signal(signal.SIGTERM, before)
