@@ -14,7 +14,7 @@ PROGRAM = """
 import sys
 from cli.main import main
 status = main(sys.argv[1:])
-print(*sorted({name.partition(".")[0] for name in sys.modules}), file=sys.stderr)
+print(*sorted({name.partition(".")[0] for name in sys.modules} | {"numpy.ma"} & set(sys.modules)), file=sys.stderr)
 sys.exit(status)
 """
 
@@ -31,6 +31,13 @@ def test_scene_to_data_needs_no_heavy_library(scene_file: Path, output: str) -> 
     loaded = modules_after("simulate", str(scene_file), "-o", target)
     assert "numpy" in loaded
     assert not loaded & {"cv2", "scipy", "av", "pymunk", "matplotlib", "asyncio", "sketch"}
+
+
+def test_strokes_to_a_scene_needs_no_heavy_library() -> None:
+    """numpy.ma is what np.median loads; tempfile, zipfile and shutil bring every compressor."""
+    loaded = modules_after("recognize", "samples/pendulum.json", "-o", "-")
+    assert "sketch" in loaded
+    assert not loaded & {"cv2", "scipy", "av", "numpy.ma", "tempfile", "zipfile", "shutil", "csv", "asyncio"}
 
 
 def test_help_needs_no_numpy() -> None:
