@@ -35,8 +35,18 @@ class Parser(argparse.ArgumentParser):
     """An ArgumentParser that raises UsageError and leaves its text's line breaks alone."""
 
     def __init__(self, **options: Any) -> None:
-        options.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        self._width = 80
         super().__init__(allow_abbrev=False, **options)
+
+    def _get_formatter(self) -> argparse.HelpFormatter:
+        """One of a given width: asked for by every option, it would load shutil to look at the terminal."""
+        return argparse.RawDescriptionHelpFormatter(prog=self.prog, width=self._width)
+
+    def format_help(self) -> str:
+        from shutil import get_terminal_size
+
+        self._width = get_terminal_size().columns - 2
+        return super().format_help()
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(re.sub(r"^argument ", "", message), f"`{self.prog} --help` lists the options")
