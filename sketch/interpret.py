@@ -88,6 +88,8 @@ def _pivots(drawn: list[Drawn], ppm: float, notes: list[str]) -> list[Joint]:
     for circle in sorted(circles, key=lambda d: -d.size):  # so that a pivot is asked of bodies, not of pivots
         at = circle.outline.mean(axis=0)
         radius = circle.size / math.sqrt(math.pi)
+        if circle.reading.forced is None and _pinned(at, radius, circles):
+            continue
         forced = circle.reading.forced == "pivot"
         under, odds = _under(circle, at, radius, drawn, forced)
         if not under:
@@ -110,6 +112,15 @@ def _pivots(drawn: list[Drawn], ppm: float, notes: list[str]) -> list[Joint]:
         pair = (under[0].body.id, under[1].body.id if len(under) == 2 else None)
         joints.append(Joint(bodies=pair, position=(float(at[0]) / ppm, -float(at[1]) / ppm)))
     return joints
+
+
+def _pinned(at: Array, radius: float, circles: list[Drawn]) -> bool:
+    """Whether a circle has a pivot of its own: a much smaller circle at its centre. It is a wheel then, no pin."""
+    return any(
+        d.size / math.sqrt(math.pi) < 2 * JOINS * radius
+        and math.dist(at, d.outline.mean(axis=0)) < JOINS * radius
+        for d in circles
+    )
 
 
 def _under(

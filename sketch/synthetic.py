@@ -3,7 +3,8 @@ samples.
 
 A stroke is an ideal path (straight or round), its corners rounded, bent by a slow drift of the hand and a
 fast tremor, with a hook where the pen goes down and an overshoot or a gap where strokes should meet. All
-lengths are shares of the shape's size, so that ink scales. Nothing is random but the generator that is
+lengths are shares of the shape's size, so that ink scales; a long thin outline is drawn with the care that
+its area takes. Nothing is random but the generator that is
 passed in::
 
     rng = np.random.default_rng(7)
@@ -20,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["HANDS", "Hand", "arrow", "circle", "cross", "ellipse", "line", "outline", "scribble"]
+__all__ = ["HANDS", "Hand", "arrow", "circle", "cross", "curve", "ellipse", "line", "outline", "scribble"]
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -72,7 +73,7 @@ def line(points: Sequence[Point], hand: Hand, rng: np.random.Generator) -> list[
 def outline(vertices: Sequence[Point], hand: Hand, rng: np.random.Generator) -> list[Array]:
     """A closed polygon, in as many strokes as the hand likes: each begins and ends at a corner."""
     v = np.array(vertices, dtype=np.float64)
-    n, size = len(v), _size(v)
+    n, size = len(v), min(_size(v), math.sqrt(2 * _area(v)))
     first = int(rng.integers(n))
     v = np.roll(v, -first, axis=0)
     if rng.random() < 0.5:
@@ -104,6 +105,15 @@ def ellipse(
     c, s = math.cos(angle), math.sin(angle)
     local = np.stack([radii[0] * np.cos(t), radii[1] * np.sin(t)], axis=1)
     return [_pen(np.array(centre) + local @ np.array([[c, s], [-s, c]]), size, hand, rng)]
+
+
+def curve(path: Array, hand: Hand, rng: np.random.Generator) -> list[Array]:
+    """Any path of points close together, (n, 2), in one stroke."""
+    step = hand.spacing * _size(path)
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    t = np.linspace(0, along[-1], max(round(along[-1] / step), 12))
+    even = np.stack([np.interp(t, along, path[:, k]) for k in (0, 1)], axis=1)
+    return [_pen(even, _size(path), hand, rng)]
 
 
 def cross(centre: Point, size: float, hand: Hand, rng: np.random.Generator) -> list[Array]:
@@ -148,6 +158,12 @@ def scribble(centre: Point, size: float, rng: np.random.Generator) -> list[Array
 
 def _size(path: Array) -> float:
     return float(np.hypot(*np.ptp(path, axis=0)))
+
+
+def _area(v: Array) -> float:
+    """Of a polygon, by the shoelace formula."""
+    x, y = v[:, 0], v[:, 1]
+    return abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))) / 2
 
 
 def _stretched(path: Array, ends: Array) -> Array:

@@ -1,0 +1,462 @@
+"""How right and how fast drawings are read: on made-up ink of many writers, and on a corpus of real ink.
+
+`sketchsim bench recognition` prints it all: whole sketches with 95 % intervals (Wilson's), what was taken for
+what, what must not change a reading, ink without a meaning, whether scores mean what they say, time and memory.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import subprocess
+import sys
+import time
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cli.progress import Progress
+from sim.scene import Body, Circle, Polygon
+from sketch import Recognition, Sketch, Stroke, recognize
+from tests.benchmarks import corpus, pictured
+from tests.benchmarks.drawings import Drawing, Meant, differences, matched, writer
+from tests.benchmarks.mechanisms import KINDS, NONSENSE, draw, nonsense
+
+__all__ = ["main"]
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+WRITERS = 20
+CHANGED = 120  # sketches that are drawn in other orders, sizes, ...
+COMPOSED = 270  # sketches of real ink
+SIZES = (20, 50, 100, 200, 400)  # strokes
+BINS = (0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.0)
+
+
+def main(argv: list[str]) -> int:
+    p = argparse.ArgumentParser(prog="sketchsim bench recognition", description=__doc__)
+    p.add_argument(
+        "--corpus", type=Path, metavar="DIR", help="real ink: a folder with dev/*.jsonl.gz and compose.py"
+    )
+    p.add_argument(
+        "--failures", type=Path, metavar="DIR", help="for a picture of each sketch that is read wrong"
+    )
+    p.add_argument("--count", type=int, default=504, metavar="N", help="made-up sketches (504)")
+    p.add_argument("--seed", type=int, default=0, metavar="S", help="another seed draws others (0)")
+    options = p.parse_args(argv)
+    if options.corpus is not None and not (options.corpus / "dev").is_dir():
+        p.error(f"--corpus {options.corpus}: there is no folder dev in it")
+    with Progress() as progress:
+        bench = Bench(progress, options.failures)
+        bench.mechanisms(options.count, options.seed)
+        bench.changes(min(CHANGED, options.count), options.seed)
+        bench.nonsense(options.count // 4, options.seed)
+        if options.corpus is not None:
+            bench.isolated(options.corpus)
+            bench.composed(options.corpus, options.seed)
+        bench.costs(options.seed)
+    return 0
+
+
+def interval(right: int, count: int) -> tuple[float, float]:
+    """95 % confidence interval of a share (Wilson 1927)."""
+    if count == 0:
+        return 0.0, 1.0
+    z, p = 1.96, right / count
+    middle = p + z * z / (2 * count)
+    half = z * math.sqrt(p * (1 - p) / count + z * z / (4 * count * count))
+    return (middle - half) / (1 + z * z / count), (middle + half) / (1 + z * z / count)
+
+
+def rate(right: int, count: int) -> str:
+    low, high = interval(right, count)
+    return (
+        f"{right:5} of {count:4} = {100 * right / max(count, 1):5.1f} % ({100 * low:.1f} to {100 * high:.1f})"
+    )
+
+
+@dataclass(eq=False)
+class Judged:
+    """A drawing, how it was read, and what is wrong with that."""
+
+    drawing: Drawing
+    recognition: Recognition
+    hits: dict[int, tuple[int, float]]
+    wrong: list[str]
+    seconds: float
+
+
+def judge(drawing: Drawing) -> Judged:
+    sketch = drawing.sketch
+    begin = time.process_time()
+    recognition = recognize(sketch)
+    seconds = time.process_time() - begin
+    hits = matched(drawing, recognition.scene)
+    return Judged(drawing, recognition, hits, differences(drawing, recognition.scene, hits), seconds)
+
+
+class Bench:
+    """The tables, one a method; failures are drawn as they come."""
+
+    def __init__(self, progress: Progress, failures: Path | None) -> None:
+        self.progress = progress
+        self.failures = failures
+        if failures is not None:
+            failures.mkdir(parents=True, exist_ok=True)
+
+    def each(self, items: Sequence[T], what: str) -> Iterator[T]:
+        for k, item in enumerate(items):
+            self.progress.say(what, k / len(items))
+            yield item
+        self.progress.clear()
+
+    def show(
+        self, name: str, recognition: Recognition, wrong: list[str], meant: Iterable[Meant] = ()
+    ) -> None:
+        if self.failures is not None:
+            path = self.failures / f"{name.replace('/', '-')}.png"
+            path.write_bytes(pictured.failure(recognition, wrong, [m.outline for m in meant]))
+
+    # ------------------------------------------------------------ made-up ink
+
+    def mechanisms(self, count: int, seed: int) -> None:
+        judged = []
+        for k in self.each(range(count), "mechanisms"):
+            j = judge(draw(k, seed, WRITERS))
+            judged.append(j)
+            if j.wrong:
+                self.show(f"{j.drawing.name}-{k}", j.recognition, j.wrong, j.drawing.bodies)
+        print(f"made-up mechanisms of {len(KINDS)} kinds by {WRITERS} writers, seed {seed}")
+        _whole(judged)
+        _kinds(judged)
+        _confusion(judged)
+        _reliability(judged)
+
+    def changes(self, count: int, seed: int) -> None:
+        right = []
+        for k in self.each(range(count), "mechanisms to be changed"):
+            drawing = draw(k, seed + 1, WRITERS)
+            if not judge(drawing).wrong:
+                right.append(drawing)
+        print(f"\nthe same sketch drawn otherwise: right as before, of {len(right)} that were right")
+        for name, change in CHANGES.items():
+            kept = 0
+            for k, drawing in enumerate(self.each(right, name)):
+                j = judge(change(drawing, np.random.default_rng([seed, k])))
+                kept += not j.wrong
+                if j.wrong:
+                    self.show(
+                        f"{name}-{drawing.name}-{k}".replace(" ", "-"),
+                        j.recognition,
+                        j.wrong,
+                        j.drawing.bodies,
+                    )
+            print(f"  {name:<28}{rate(kept, len(right))}")
+
+    def nonsense(self, count: int, seed: int) -> None:
+        """Ink without a meaning, on a good sketch: it must change nothing else, be no body, and be named."""
+        tally: dict[str, Counter[str]] = defaultdict(Counter)
+        for k in self.each(range(count), "ink without a meaning"):
+            drawing = draw(k, seed + 2, WRITERS)
+            if judge(drawing).wrong:
+                continue
+            name = NONSENSE[k % len(NONSENSE)]
+            first = len(drawing.strokes)
+            at = _free_place(drawing)
+            nonsense(name, at, float(drawing.rng.uniform(60, 120)), drawing)
+            _count_strays(self, tally[name], drawing, range(first, len(drawing.strokes)), f"{name}-{k}")
+        _print_strays("made-up ink without a meaning, on a good sketch", tally)
+
+    # ------------------------------------------------------------ real ink
+
+    def isolated(self, folder: Path) -> None:
+        tables: dict[tuple[str, str, str], Counter[str]] = defaultdict(Counter)
+        strays: dict[str, Counter[str]] = defaultdict(Counter)
+        base = draw(3, 5, WRITERS)  # a stack of boxes
+        while judge(base).wrong:
+            base = draw(int(base.rng.integers(10_000)) * len(KINDS) + 3, 5, WRITERS)
+        for sample in self.each(list(corpus.samples(folder)), "shapes of the corpus"):
+            name = f"{sample.source}-{sample.label}-{sample.name}"
+            if sample.meant is None:
+                place = _placed(sample.strokes, _free_place(base), 110.0)
+                drawing = replace(base, strokes=[*base.strokes, *place])
+                strokes = range(len(base.strokes), len(drawing.strokes))
+                _count_strays(self, strays[f"{sample.source} {sample.label}"], drawing, strokes, name)
+                continue
+            if sample.source.startswith("fca") and sample.meant == "gravity":
+                continue  # routed, with bends
+            got, recognition = _alone(sample)
+            tables[sample.source, sample.label, sample.meant][got] += 1
+            if got != sample.meant:
+                self.show(name, recognition, [f"{sample.meant} was read as {got}"])
+        print("\nshapes of the corpus, one by one")
+        right = total = 0
+        for (source, label, meant), table in sorted(tables.items()):
+            n = sum(table.values())
+            right, total = right + table[meant], total + n
+            others = ", ".join(f"{k} {v}" for k, v in table.most_common() if k != meant)
+            print(f"  {source:<14}{label:<14}{rate(table[meant], n)}  {others}")
+        print(f"  {'all':<28}{rate(right, total)}")
+        _print_strays("ink of the corpus outside the vocabulary, on a good sketch", strays)
+
+    def composed(self, folder: Path, seed: int) -> None:
+        drawings = corpus.composed(folder, COMPOSED, seed)
+        judged = []
+        for k, drawing in enumerate(self.each(drawings, "composed sketches")):
+            j = judge(drawing)
+            judged.append(j)
+            if j.wrong:
+                self.show(f"composed-{drawing.name}-{k}", j.recognition, j.wrong, drawing.bodies)
+        print(f"\nsketches composed of the corpus' ink, seed {seed}")
+        _whole(judged)
+        _kinds(judged)
+        _confusion(judged)
+        _reliability(judged)
+
+    # ------------------------------------------------------------ time and memory
+
+    def costs(self, seed: int) -> None:
+        print("\nCPU time, the least of three [ms]")
+        print(f"  {'strokes':<28}" + "".join(f"{n:>9}" for n in SIZES))
+        for name, page in (("machines side by side", _machines), ("lines across each other", _crossing)):
+            times = []
+            for n in self.each(SIZES, name):
+                sketch = page(n, seed)
+                runs = 3 if n <= 200 else 1
+                times.append(min(_seconds(recognize, sketch) for _ in range(runs)))
+            print(f"  {name:<28}" + "".join(f"{1e3 * t:9.1f}" for t in times))
+        used = subprocess.run(
+            [sys.executable, "-c", _MEMORY], check=True, capture_output=True, text=True, env=_environment()
+        ).stdout.split()
+        print(f"memory beyond the ink: {used[0]} MB for 200 strokes of 500 points", end="")
+        print(f", {used[1]} MB for a stroke of a million, which takes {used[2]} s CPU")
+
+
+# ---------------------------------------------------------------- tables
+
+
+def _whole(judged: list[Judged]) -> None:
+    right = sum(not j.wrong for j in judged)
+    shares = [share for j in judged for _, share in j.hits.values()]
+    times = [1e3 * j.seconds for j in judged]
+    print(f"  {'wholly right':<28}{rate(right, len(judged))}")
+    print(f"  {'mean overlap of bodies':<28}{np.mean(shares):14.3f}")
+    strokes = np.mean([len(j.drawing.strokes) for j in judged])
+    print(f"  {'CPU of a sketch':<28}{np.mean(times):11.1f} ms, of {strokes:.1f} strokes")
+
+
+def _kinds(judged: list[Judged]) -> None:
+    by_kind: dict[str, list[Judged]] = defaultdict(list)
+    for j in judged:
+        by_kind[j.drawing.name].append(j)
+    for name, group in sorted(by_kind.items()):
+        reasons = Counter(_reason(w) for j in group for w in j.wrong[:1])
+        said = "; ".join(f"{text} ({n})" for text, n in reasons.most_common(2))
+        print(f"    {name.replace('_', ' '):<26}{rate(sum(not j.wrong for j in group), len(group))}  {said}")
+
+
+def _reason(text: str) -> str:
+    return " ".join(
+        "n" if any(c.isdigit() for c in word) and "side" not in text else word for word in text.split()
+    )
+
+
+def _class(body: Body) -> str:
+    if isinstance(body.shape, Circle):
+        return "circle"
+    sides = len(body.shape.vertices) if isinstance(body.shape, Polygon) else 4
+    return str(sides) if sides <= 6 else "more"
+
+
+def _confusion(judged: list[Judged]) -> None:
+    columns = ("circle", "3", "4", "5", "6", "more", "missing")
+    table: dict[str, Counter[str]] = defaultdict(Counter)
+    for j in judged:
+        for i, meant in enumerate(j.drawing.bodies):
+            row = meant.kind if meant.kind in ("circle", "round", "bar") else f"{meant.sides} sides"
+            hit = j.hits.get(i)
+            table[row]["missing" if hit is None else _class(j.recognition.scene.bodies[hit[0]])] += 1
+        table["nothing"]["invented"] += len(j.recognition.scene.bodies) - len(j.hits)
+    print(f"    {'drawn, read as':<16}" + "".join(f"{c:>9}" for c in columns))
+    for row, counts in sorted(table.items()):
+        if row != "nothing":
+            print(f"    {row:<16}" + "".join(f"{counts[c] or '.':>9}" for c in columns))
+    print(f"    bodies invented: {table['nothing']['invented']}")
+
+
+def _reliability(judged: list[Judged]) -> None:
+    """Of the readings of bodies with a score in some range, how many are right."""
+    pairs = []
+    for j in judged:
+        back = {found: i for i, (found, _) in j.hits.items()}
+        for k, body in enumerate(j.recognition.scene.bodies):
+            good = k in back and j.drawing.bodies[back[k]].is_read_as(body)
+            pairs.append((body.score or 0.0, good))
+    scores, good = np.array([s for s, _ in pairs]), np.array([g for _, g in pairs])
+    print(f"    {'score':<16}{'bodies':>9}{'mean':>9}{'right':>9}")
+    for low, high in pairwise(BINS):
+        within = (scores >= low) & ((scores < high) | (high == 1.0))
+        if within.any():
+            share = f"{100 * good[within].mean():8.1f}%"
+            print(
+                f"    {f'{low:g} to {high:g}':<16}{within.sum():9}{100 * scores[within].mean():8.1f}%{share}"
+            )
+    brier = float(np.mean((scores - good) ** 2))
+    print(f"    Brier score {brier:.4f}; {np.mean(good) * (1 - np.mean(good)):.4f} if each said the mean")
+
+
+def _count_strays(bench: Bench, tally: Counter[str], drawing: Drawing, strokes: range, name: str) -> None:
+    j = judge(drawing)
+    scene, stray = j.recognition.scene, set(strokes)
+    invented = [b for b in scene.bodies if stray & set(b.strokes or [])]
+    others = [w for w in j.wrong if not any(w.startswith(b.id + " ") for b in invented)]
+    read = {s for r in j.recognition.readings if r.kind != "unread" for s in r.strokes}
+    named = set().union(*(r.strokes for r in j.recognition.readings if r.kind == "unread"))
+    tally["count"] += 1
+    tally["body"] += bool(invented)
+    tally["changed"] += bool(others)
+    tally["silent"] += not stray <= read | named
+    if invented or others:
+        bench.show(f"stray-{name}", j.recognition, j.wrong, drawing.bodies)
+
+
+def _print_strays(title: str, tally: dict[str, Counter[str]]) -> None:
+    print(f"\n{title}: taken for a body, and anything else changed")
+    every: Counter[str] = Counter()
+    for name, t in sorted(tally.items()):
+        every.update(t)
+        print(f"  {name:<28}{t['body']:5} {t['changed']:5} of {t['count']:4}")
+    print(f"  {'a body':<28}{rate(every['body'], every['count'])}")
+    print(f"  {'anything else changed':<28}{rate(every['changed'], every['count'])}")
+    print(f"  {'neither read nor named':<28}{rate(every['silent'], every['count'])}")
+
+
+# ---------------------------------------------------------------- what must not change a reading
+
+
+def _turned(drawing: Drawing, rng: np.random.Generator) -> Drawing:
+    angle = float(rng.uniform(0, 2 * math.pi))
+    c, s = math.cos(angle), math.sin(angle)
+    return drawing.moved(lambda p: p @ np.array([[c, s], [-s, c]]), angle)
+
+
+def _shuffled(drawing: Drawing, rng: np.random.Generator) -> Drawing:
+    return replace(drawing, strokes=[drawing.strokes[i] for i in rng.permutation(len(drawing.strokes))])
+
+
+def _points(count: int) -> Callable[[Drawing, np.random.Generator], Drawing]:
+    return lambda drawing, _: replace(drawing, strokes=[resampled(s, count) for s in drawing.strokes])
+
+
+def resampled(stroke: Array, count: int) -> Array:
+    """So many points along a stroke, at equal distances."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(stroke, axis=0).T))])
+    t = np.linspace(0, along[-1], count)
+    return np.stack([np.interp(t, along, stroke[:, k]) for k in (0, 1)], axis=1)
+
+
+CHANGES: dict[str, Callable[[Drawing, np.random.Generator], Drawing]] = {
+    "strokes in another order": _shuffled,
+    "strokes reversed": lambda d, _: replace(d, strokes=[s[::-1] for s in d.strokes]),
+    "0.3 times as large": lambda d, _: d.moved(lambda p: 0.3 * p),
+    "4 times as large": lambda d, _: d.moved(lambda p: 4 * p),
+    "turned by any angle": _turned,
+    "10 points a stroke": _points(10),
+    "400 points a stroke": _points(400),
+}
+
+
+# ---------------------------------------------------------------- pages
+
+
+def _free_place(drawing: Drawing) -> tuple[float, float]:
+    """The place of the page that is farthest from all ink [pixels]."""
+    ink = np.concatenate(drawing.strokes)
+    places = [(float(x), float(y)) for x in range(90, 1240, 46) for y in range(90, 660, 38)]
+    return max(places, key=lambda at: float(np.hypot(*(ink - at).T).min()))
+
+
+def _placed(strokes: list[Array], at: tuple[float, float], size: float) -> list[Array]:
+    ink = np.concatenate(strokes)
+    low, span = ink.min(axis=0), np.ptp(ink, axis=0)
+    return [(s - low - span / 2) * (size / span.max()) + at for s in strokes]
+
+
+def _alone(sample: corpus.Sample) -> tuple[str, Recognition]:
+    """What a sample is read as on a page of its own; an X within a box, as it means nothing elsewhere."""
+    drawing = Drawing(writer(0), np.random.default_rng(1))
+    anchor = sample.meant == "anchor"
+    if anchor:
+        drawing.box(640, 360, 520, 420)
+    first = len(drawing.strokes)
+    strokes = [
+        Stroke(s) for s in [*drawing.strokes, *_placed(sample.strokes, (640, 360), 150 if anchor else 300)]
+    ]
+    recognition = recognize(Sketch(strokes, 1280.0, 720.0))
+    found = [
+        _kind(r.kind, len(r.outline), sample.meant) for r in recognition.readings if max(r.strokes) >= first
+    ]
+    return " + ".join(sorted(found)), recognition
+
+
+def _kind(kind: str, sides: int, meant: str | None) -> str:
+    if kind in ("rectangle", "polygon"):
+        return str(sides) if sides < 8 else "round"
+    return kind
+
+
+def _machines(count: int, seed: int) -> Sketch:
+    """Mechanisms side by side, with so many strokes in all."""
+    strokes: list[Stroke] = []
+    k = 0
+    while len(strokes) < count:
+        place = np.array([1300.0 * (k % 4), 740.0 * (k // 4)])
+        strokes += [Stroke(s + place) for s in draw(k, seed + 3, WRITERS).strokes]
+        k += 1
+    return Sketch(strokes[:count])
+
+
+def _crossing(count: int, seed: int) -> Sketch:
+    """Long lines at random, each across half of the others."""
+    rng = np.random.default_rng([seed, count])
+    return Sketch([Stroke(resampled(rng.uniform(0, 1000, (2, 2)), 20)) for _ in range(count)])
+
+
+def _seconds(call: Callable[[Sketch], object], sketch: Sketch) -> float:
+    begin = time.process_time()
+    call(sketch)
+    return time.process_time() - begin
+
+
+_MEMORY = """
+import time, tracemalloc, numpy as np
+from sketch import Sketch, Stroke, recognize
+from tests.benchmarks.recognition import _machines, resampled
+recognize(_machines(20, 0))
+sketch = Sketch([Stroke(resampled(s.points, 500)) for s in _machines(200, 0).strokes])
+t = np.linspace(0, 6.28, 1_000_000)
+circle = Sketch([Stroke(np.stack([100 * np.cos(t), 100 * np.sin(t)], axis=1))])
+begin = time.process_time()
+recognize(circle)
+seconds = time.process_time() - begin
+tracemalloc.start()
+for page in (sketch, circle):
+    before = tracemalloc.get_traced_memory()[0]
+    tracemalloc.reset_peak()
+    recognize(page)
+    print(round((tracemalloc.get_traced_memory()[1] - before) / 1e6))
+print(round(seconds, 2))
+"""
+
+
+def _environment() -> dict[str, str]:
+    import os
+
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
