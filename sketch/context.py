@@ -18,6 +18,9 @@ Array = NDArray[np.float64]
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
 NO_BODY = 30.0  # nats that an X away from every body is unlikely: it would mean nothing
+ONE_ARROW = (
+    15.0  # nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two
+)
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 LETTER = 0.15  # of the page: larger bars are no letter
@@ -47,9 +50,22 @@ def with_context(candidates: list[Fitted], gains: list[float], chosen: list[int]
             gains[k] -= SLIP * (bodies.slip(c, extent) or extent < TWIG * size)
         elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
             gains[k] += ANCHORS
+    first = _first_arrow(candidates, gains, chosen)
+    for k, c in enumerate(candidates):
+        if c.kind == "arrow" and first:
+            gains[k] += ONE_ARROW if first & set(c.pieces) else -ONE_ARROW
     for k in _letters(candidates, gains, chosen, LETTER * size):
         gains[k] -= TOUCHING
     return gains
+
+
+def _first_arrow(candidates: list[Fitted], gains: list[float], chosen: list[int]) -> set[int]:
+    """The pieces of the likeliest arrow: of those chosen, or else on ink that is nothing likelier."""
+    arrows = [k for k in chosen if candidates[k].kind == "arrow"]
+    if not arrows:
+        taken = {i for k in chosen if candidates[k].kind != "bar" for i in candidates[k].pieces}
+        arrows = [k for k, c in enumerate(candidates) if c.kind == "arrow" and taken.isdisjoint(c.pieces)]
+    return set(candidates[max(arrows, key=lambda k: gains[k])].pieces) if arrows else set()
 
 
 def _letters(candidates: list[Fitted], gains: list[float], chosen: list[int], largest: float) -> list[int]:

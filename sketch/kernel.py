@@ -25,7 +25,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-SAMPLES, SIDES, BENDS = 48, 12, 6  # as in core/fit.h and core/strokes.c
+SAMPLES, SIDES, BENDS, LEGS = 48, 12, 6, 12  # as in core/fit.h and core/strokes.c
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
@@ -33,7 +33,7 @@ _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_po
     ("ink_closed", _lib)
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
-_arrow = ctypes.CFUNCTYPE(_int, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_arrow", _lib))
+_arrow = ctypes.CFUNCTYPE(_int, *[_pointer] * 3, _int, *[_pointer] * 7)(("ink_arrow", _lib))
 _off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
@@ -48,7 +48,7 @@ class Strokes(NamedTuple):
         centroid,
             and across the longer axis [pixels].
         samples: (strokes, SAMPLES, 2), in equal steps of length.
-        residual: (strokes, BENDS + 1): mean squared distance from its best k segments [pixels²].
+        residual: (strokes, LEGS + 1): mean squared distance from its best k segments [pixels²].
         vertices: (strokes, BENDS + 1, BENDS + 1, 2): of those segments.
     """
 
@@ -92,12 +92,18 @@ class ClosedFit(NamedTuple):
 
 
 class ArrowFit(NamedTuple):
-    """An arrow on some strokes: points [pixels] and angles [rad] (see core/arrow.c)."""
+    """An arrow on some strokes: points [pixels] and angles [rad] (see core/arrow.c).
+
+    lengths, ink: of the shaft and of each barb, and of the ink nearest to each [pixels].
+    off: mean squared distance of each stroke from the arrow [pixels²].  bare: of the arrow from the ink.
+    """
 
     head: Array
     lengths: list[float]
     angles: list[float]
+    ink: list[float]
     off: list[float]
+    bare: float
 
 
 _COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1))  # of ink_closed's results, in order
@@ -114,7 +120,7 @@ def measure(strokes: list[Array]) -> Strokes:
         np.empty_like(ends),
         np.empty((count, 8)),
         np.empty((count, SAMPLES, 2)),
-        np.empty((count, BENDS + 1)),
+        np.empty((count, LEGS + 1)),
         np.empty((count, BENDS + 1, BENDS + 1, 2)),
     )
     _strokes(xy.ctypes.data, ends.ctypes.data, count, *(part.ctypes.data for part in out))
@@ -164,10 +170,11 @@ def fit_arrow(
     head."""
     chosen = np.array(names, dtype=np.int32)
     inputs = np.array((*tail, *toward))
-    out = np.empty(11 + len(names))
+    out = np.empty(15 + len(names))
     at, given = out.ctypes.data, inputs.ctypes.data
     if not _arrow(
         strokes.samples.ctypes.data,
+        strokes.measure.ctypes.data,
         chosen.ctypes.data,
         len(names),
         given,
@@ -176,10 +183,13 @@ def fit_arrow(
         at + 48,
         at + 72,
         at + 88,
+        at + 112,
     ):
         return None
     values = out.tolist()
-    return ArrowFit(out[:6].reshape(3, 2), values[6:9], values[9:11], values[11:])
+    return ArrowFit(
+        out[:6].reshape(3, 2), values[6:9], values[9:11], values[11:14], values[14:-1], values[-1]
+    )
 
 
 def off_outline(strokes: Strokes, index: int, outline: Array) -> float:

@@ -11,13 +11,21 @@ import numpy as np
 from sketch.kernel import fit_arrow, off_outline
 from sketch.outlines import RETRACE
 from sketch.pieces import Array, Page, Piece, Point
-from sketch.scoring import FREE, PARAMETER, Fitted, misfit_of
+from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
 
 __all__ = ["read_arrow", "read_bar", "read_cross", "with_strays"]
 
 MOST_BENDS = 5
-BEND = 8.0  # nats for each corner of a bar, and for each that folds it back
+BEND = 5.0  # nats for each corner of a bar
+SHARP = 15.0  # nats that a right angle is rarer in a bar, one that folds it back twice that
 HEAD = 2.0  # nats an observation to say ink freely, where it lies within an arrow's head
+SHAFT = 0.55  # of the shaft: what the distance of an arrow's ink goes with,
+GAPS = 0.5  # and how far any of the arrow is from ink: a barb that nobody drew is no slip of the hand
+OFTEN = (
+    1.3,
+    2.0,
+    2.0,
+)  # times that a shaft and the barbs of an arrow are drawn: the pen comes back along a barb
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
 RARE = 15.0  # nats that an open line is rarer than an outline
 RARE_ARROW = 2.0  # likewise for an arrow: there is one on a page, or none
@@ -34,16 +42,16 @@ def read_bar(piece: Piece) -> Fitted | None:
         cost = misfit_of(piece, piece.residual[k]) + 2 * (k + 1) * PARAMETER + BEND * (k - 1)
         if cost > best:
             continue
-        cost += BEND * _folds(piece.vertices[k][: k + 1])
+        cost += SHARP * _turning(piece.vertices[k][: k + 1])
         if cost < best:
             best, segments = cost, k
     return Fitted("bar", (piece.index,), best + RARE, piece.line(segments))
 
 
-def _folds(v: list[Vertex]) -> int:
-    """How many corners turn by more than 115 degrees: a bar seldom runs back along itself."""
+def _turning(v: list[Vertex]) -> float:
+    """How sharply a polyline turns: each corner by 1 - cos of its angle."""
     sides = [complex(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(v)]
-    return sum((b * a.conjugate()).real < -0.42 * abs(a) * abs(b) for a, b in pairwise(sides))
+    return sum(1 - (b * a.conjugate()).real / max(abs(a) * abs(b), 1e-12) for a, b in pairwise(sides))
 
 
 def read_cross(page: Page, names: tuple[int, ...]) -> Fitted | None:
@@ -96,7 +104,7 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
     shaft, left, right = fit.lengths
     # an arrow whose ends meet is no loop, nor a barb that was drawn forth and back
     whole = (
-        [0.55 * shaft]
+        [SHAFT * shaft]
         if len(pieces) == 1
         else [p.extent / 2 if p.extent < 0.6 * shaft else None for p in pieces]
     )
@@ -106,14 +114,17 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
         if cost > HEAD * p.observations and p.extent < 0.6 * shaft and _within(page, p, fit.head):
             cost = HEAD * p.observations
         off += cost
-    drawn = sum(p.length for p in pieces)
-    twice = max(1 - (shaft + left + right) / drawn, 0.0)  # the share of the ink that was drawn twice
-    again = FREE * twice * sum(p.observations for p in pieces)
+    count = sum(p.observations for p in pieces)
+    # what lacks, and what goes over the arrow more often than a hand does, takes as much to say as free ink
+    parts = zip((shaft, left, right), OFTEN, fit.ink, strict=True)
+    wrong = sum(max(long - ink, ink - often * long, 0.0) for long, often, ink in parts)
+    again = FREE * wrong / sum(fit.ink) * count + misfit(fit.bare / (GAPS * shaft) ** 2, count)
     # a head is two barbs alike, at some 35 degrees, less than half as long as the shaft
     alike = (math.log(left / right) / 0.35) ** 2
     size = (math.log((left + right) / 2 / shaft / 0.45) / 0.4) ** 2
     spread = sum(((angle - 0.6) / 0.25) ** 2 for angle in fit.angles)
-    cost = RARE_ARROW + 6 * PARAMETER + off + again + 0.5 * (alike + size + spread)
+    # tail and tip; the head is said by how unlike a head it is
+    cost = RARE_ARROW + 4 * PARAMETER + off + again + 0.5 * (alike + size + spread)
     tip, left, right = fit.head.tolist()
     figure = np.array([tail, tip, left, tip, right, tip])
     return Fitted("arrow", tuple(sorted(names)), cost, np.array([tail, tip]), figure=figure)

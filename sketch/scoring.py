@@ -25,7 +25,7 @@ TREMOR = 0.05  # spread of ink about what was meant, as a share of the radius; a
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius; as in core/outline.c
 PARAMETER = 4.0  # nats to say one parameter to that precision: about ln(page / tremor)
 FREE = 4.0  # nats an observation to say ink freely, point by point
-STRANGE = 8.0  # nats to say that something was drawn that has no meaning here
+STRANGE = 35.0  # nats to say that something was drawn that has no meaning here
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -58,8 +58,9 @@ class Fitted:
 
 
 def unread(piece: Piece) -> float:
-    """Nats to say a piece's ink freely."""
-    return STRANGE + FREE * piece.observations
+    """Nats to say a piece's ink freely: point by point, or as the polyline that says it in fewest."""
+    legs = (2 * (k + 1) * PARAMETER + misfit_of(piece, r) for k, r in enumerate(piece.residual) if k)
+    return STRANGE + min(FREE * piece.observations, *legs)
 
 
 def misfit(mean_square: float, count: float) -> float:

@@ -3,13 +3,18 @@
 
 #include <math.h>
 
+enum { STEPS = 12 }; /* along each part of an arrow, to look for its ink */
+
 /* samples: of every stroke of the page, (strokes, SAMPLES, 2) [pixels]; names: the strokes meant, `count` of them.
+ * length: of each stroke, a row of `measure` apart [pixels].
  * tail, toward: the shaft's tail and a point on the way to the tip.
  * Out: head (2) and barbs' ends (4) [pixels]; lengths (3): of the shaft and the barbs; angles (2): between barb and shaft;
- * off[k]: mean squared distance of the k-th stroke from the arrow [pixels²].
+ * off[k]: mean squared distance of the k-th stroke from the arrow [pixels²]; off[count]: of the arrow from the ink.
+ * ink (3): length of the ink that is nearest to the shaft, and to each barb.
  * Returns 0 where the ink has no head: a barb on each side, pointing back. */
-INK_API int32_t ink_arrow(const double *samples, const int32_t *names, int32_t count, const double *tail,
-                          const double *toward, double *head, double *lengths, double *angles, double *off) {
+INK_API int32_t ink_arrow(const double *samples, const double *length, const int32_t *names, int32_t count,
+                          const double *tail, const double *toward, double *head, double *lengths, double *angles,
+                          double *ink, double *off) {
     double ux = toward[0] - tail[0], uy = toward[1] - tail[1], l = hypot(ux, uy);
     if (l <= 0) return 0;
     ux /= l;
@@ -48,15 +53,40 @@ INK_API int32_t ink_arrow(const double *samples, const int32_t *names, int32_t c
     angles[1] = atan2(tip[1] - right[1], tip[0] - right[0]);
     for (int e = 0; e < 2; e++)
         if (angles[e] < 0.15 || angles[e] > 1.4 || lengths[e + 1] < 0.1 * reach) return 0;
+    ink[0] = ink[1] = ink[2] = 0;
     for (int k = 0; k < count; k++) {
         off[k] = 0;
         for (int i = 0; i < SAMPLES; i++) {
             const double *p = samples + 2 * (SAMPLES * names[k] + i);
             double s = (p[0] - tail[0]) * ux + (p[1] - tail[1]) * uy, h = (p[1] - tail[1]) * ux - (p[0] - tail[0]) * uy;
-            double d = segment_distance2(s, h, origin, tip);
-            d = fmin(d, segment_distance2(s, h, tip, left));
-            off[k] += fmin(d, segment_distance2(s, h, tip, right)) / SAMPLES;
+            const double d[3] = {segment_distance2(s, h, origin, tip), segment_distance2(s, h, tip, left),
+                                 segment_distance2(s, h, tip, right)};
+            int nearest = d[1] < d[0] ? (d[2] < d[1] ? 2 : 1) : (d[2] < d[0] ? 2 : 0);
+            off[k] += d[nearest] / SAMPLES;
+            ink[nearest] += length[8 * names[k]] / SAMPLES;
         }
+    }
+    /* An arrow has ink along all of it: a barb that nobody drew is as far off as ink that no arrow has. */
+    const double *part[3][2] = {{origin, tip}, {tip, left}, {tip, right}};
+    double whole = lengths[0] + lengths[1] + lengths[2];
+    off[count] = 0;
+    for (int e = 0; e < 3; e++) {
+        double bare = 0;
+        for (int i = 0; i < STEPS; i++) {
+            double t = (i + 0.5) / STEPS, nearest = INFINITY;
+            double s = part[e][0][0] + t * (part[e][1][0] - part[e][0][0]);
+            double h = part[e][0][1] + t * (part[e][1][1] - part[e][0][1]);
+            double x = tail[0] + s * ux - h * uy, y = tail[1] + s * uy + h * ux;
+            for (int k = 0; k < count; k++) {
+                const double *p = samples + 2 * SAMPLES * names[k];
+                for (int j = 0; j < SAMPLES; j++) {
+                    double dx = p[2 * j] - x, dy = p[2 * j + 1] - y;
+                    nearest = fmin(nearest, dx * dx + dy * dy);
+                }
+            }
+            bare += nearest / STEPS;
+        }
+        off[count] += bare * lengths[e] / whole;
     }
     const double *at[3] = {tip, left, right};
     for (int e = 0; e < 3; e++) {

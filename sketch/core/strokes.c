@@ -4,7 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { BENDS = 6 };
+enum {
+    BENDS = 6, /* segments of a polyline that anything with a meaning may have */
+    LEGS = 12  /* and of one that ink is said freely with */
+};
 
 /* Where the little turn back ends that a pen leaves where it goes down: the last turn of over 60 degrees within `reach` of
  * the start; 0 for none. Steps run from `first` by `step` (1 or -1) over n points. */
@@ -70,8 +73,12 @@ static void polylines(const double *p, int n, Runs *r, double *residual, double 
     runs_prepare(r, 1, (double[]){1e9}); /* straight */
     split_begin(&split, r, 0, 0);
     residual[0] = INFINITY;
-    for (int k = 1; k <= BENDS; k++) {
+    for (int k = 1; k <= LEGS; k++) {
         if (k > 1) split_further(&split, k);
+        if (k > BENDS) {
+            residual[k] = split.best[k][r->n] / r->n;
+            continue;
+        }
         split_bounds(&split, k, cut);
         Line side[BENDS];
         double *v = vertices + 2 * (BENDS + 1) * k, sum = 0;
@@ -102,8 +109,8 @@ static void polylines(const double *p, int n, Runs *r, double *residual, double 
 /* xy: the strokes' points [pixels] one after another, (n, 2); ends: where each of `count` strokes ends.
  * Out, for each stroke: clean: its points without repeats and hooks, clean_ends likewise; measure (11): length; box (4); ends'
  * distance; root mean square distance from its centroid; thickness (root mean square, across its longer axis); ...
- * samples (SAMPLES, 2) in equal steps of length; residual[k]: mean squared distance from its best k segments;
- * vertices[k][BENDS + 1][2]. A stroke without length has measure 0. */
+ * samples (SAMPLES, 2) in equal steps of length; residual[k]: mean squared distance from its best k segments, k up to
+ * LEGS; vertices[k][BENDS + 1][2]. A stroke without length has measure 0. */
 INK_API void ink_strokes(const double *xy, const int32_t *ends, int32_t count, double *clean, int32_t *clean_ends,
                          double *measure, double *samples, double *residual, double *vertices) {
     int out = 0;
@@ -151,6 +158,6 @@ INK_API void ink_strokes(const double *xy, const int32_t *ends, int32_t count, d
             samples[2 * (SAMPLES * s + i)] = r.x[i];
             samples[2 * (SAMPLES * s + i) + 1] = r.y[i];
         }
-        polylines(p, n, &r, residual + (BENDS + 1) * s, vertices + 2 * (BENDS + 1) * (BENDS + 1) * s);
+        polylines(p, n, &r, residual + (LEGS + 1) * s, vertices + 2 * (BENDS + 1) * (BENDS + 1) * s);
     }
 }
