@@ -105,7 +105,10 @@ def naming(source: str, wanted: bool) -> Iterator[None]:
 
 def is_scene(data: bytes) -> bool:
     """Whether this is scene JSON rather than ink."""
-    if b'"sketchsim-scene"' in data[:4096]:  # what says so itself is spared importing the recognizer
+    # What is plainly a scene is spared importing the recognizer.
+    if b'"sketchsim-scene"' in data[:4096]:
+        return True
+    if data.lstrip()[:1] == b"{" and b'"bodies"' in data and b'"strokes"' not in data:
         return True
     from sketch.formats import kind_of
 
