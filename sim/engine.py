@@ -143,7 +143,9 @@ def _sample_count(duration: float, fps: float, bodies: int) -> int:
         raise InputError("fps", f"{fps} is not a number greater than 0")
     count = duration * fps
     if count > MAX_SAMPLES or count * max(bodies, 1) * 6 > MAX_VALUES:
-        raise InputError("duration", f"{count:.0f} samples of {bodies} bodies are too many", "take fewer fps")
+        raise InputError(
+            "duration", f"{count:.0f} samples of {bodies} bodies are too many", "take fewer fps", kind="size"
+        )
     return math.floor(count * (1 + 1e-12) + 1e-9) + 1
 
 

@@ -22,11 +22,14 @@ class InputError(ValueError):
         path: the element, as ``bodies[3].position[0]`` or ``line 3 column 5``; empty for the whole input.
         problem: what is wrong there, in a few words.
         hint: what to do; may be empty.
+        kind: "value" for something in it that is not as it has to be; "file" for what cannot be read, "format"
+            for a format that is not known or not kept, "empty" where nothing is drawn, "size" for what is too
+            large, "extra" for what takes a package that is not installed.
     """
 
-    def __init__(self, path: str, problem: str, hint: str = "") -> None:
+    def __init__(self, path: str, problem: str, hint: str = "", *, kind: str = "value") -> None:
         super().__init__(f"{path}: {problem}" if path else problem)
-        self.path, self.problem, self.hint = path, problem, hint
+        self.path, self.problem, self.hint, self.kind = path, problem, hint, kind
 
 
 def parse_json(data: bytes | str, max_bytes: int = MAX_BYTES) -> Any:
@@ -36,9 +39,11 @@ def parse_json(data: bytes | str, max_bytes: int = MAX_BYTES) -> Any:
     follows can name the element that has one.
     """
     if len(data) > max_bytes:
-        raise InputError("", f"{len(data) / 1e6:.0f} MB of JSON; at most {max_bytes / 1e6:.0f} MB are taken")
+        raise InputError(
+            "", f"{len(data) / 1e6:.0f} MB of JSON; at most {max_bytes / 1e6:.0f} MB are taken", kind="size"
+        )
     if not data.strip():
-        raise InputError("", "the input is empty")
+        raise InputError("", "the input is empty", kind="empty")
     try:
         return msgspec.json.decode(data)
     except msgspec.DecodeError as e:
@@ -46,21 +51,23 @@ def parse_json(data: bytes | str, max_bytes: int = MAX_BYTES) -> Any:
             return json.loads(data)
         raise _not_json(data, e) from None
     except RecursionError:
-        raise InputError("", "JSON nested too deeply") from None
+        raise InputError("", "JSON nested too deeply", kind="format") from None
 
 
 def _not_json(data: bytes | str, cause: Exception) -> InputError:
     try:
         json.loads(data)
     except json.JSONDecodeError as e:
-        return InputError(f"line {e.lineno} column {e.colno}", f"not JSON: {e.msg[:1].lower()}{e.msg[1:]}")
+        return InputError(
+            f"line {e.lineno} column {e.colno}", f"not JSON: {e.msg[:1].lower()}{e.msg[1:]}", kind="format"
+        )
     except UnicodeDecodeError as e:
-        return InputError(f"byte {e.start}", "not JSON: not UTF-8 text")
+        return InputError(f"byte {e.start}", "not JSON: not UTF-8 text", kind="format")
     except RecursionError:
-        return InputError("", "JSON nested too deeply")
+        return InputError("", "JSON nested too deeply", kind="format")
     except ValueError:
         pass
-    return InputError("", f"not JSON: {cause}")
+    return InputError("", f"not JSON: {cause}", kind="format")
 
 
 def convert(value: Any, to: type[T]) -> T:

@@ -339,7 +339,7 @@ def _check_vertices(shape: Polygon, path: str) -> None:
     if len(v) < 3:
         raise InputError(path, f"a polygon has at least 3 vertices, not {len(v)}")
     if len(v) > MAX_VERTICES:
-        raise InputError(path, f"{len(v)} vertices; at most {MAX_VERTICES} are taken")
+        raise InputError(path, f"{len(v)} vertices; at most {MAX_VERTICES} are taken", kind="size")
     for k, p in enumerate(v):
         _vector(p, f"{path}[{k}]")
         if p == v[k - 1]:
@@ -427,9 +427,11 @@ def _check_joint(joint: Joint, ids: dict[str, int], path: str) -> None:
 def _check_header(d: dict[str, Any]) -> None:
     found = d.get("format", "sketchsim-scene")
     if found != "sketchsim-scene":
-        raise InputError("format", f"{found!r} is not 'sketchsim-scene'")
+        raise InputError("format", f"{found!r} is not 'sketchsim-scene'", kind="format")
     if d.get("version", 1) != 1:
-        raise InputError("version", f"{d['version']!r} is not 1", "this program reads version 1")
+        raise InputError(
+            "version", f"{d['version']!r} is not 1", "this program reads version 1", kind="format"
+        )
 
 
 # ---------------------------------------------------------------- JSON

@@ -113,7 +113,7 @@ class Trajectory:
                 with np.load(io.BytesIO(data), allow_pickle=False) as z:
                     return cls(body_ids=z["body_ids"].tolist(), **{name: z[name] for name in _ARRAYS})
             except (KeyError, ValueError, OSError, zipfile.BadZipFile) as e:
-                raise InputError("", f"not a trajectory: {e}") from None
+                raise InputError("", f"not a trajectory: {e}", kind="format") from None
         try:
             d = msgspec.json.decode(data)
             arrays: dict[str, Any] = {name: np.array(d[name], dtype=np.float64) for name in _ARRAYS}
@@ -123,7 +123,7 @@ class Trajectory:
             ]
             return cls(body_ids=list(d["body_ids"]), events=events, **arrays)
         except (msgspec.DecodeError, KeyError, TypeError, ValueError) as e:
-            raise InputError("", f"not a trajectory: {e}") from None
+            raise InputError("", f"not a trajectory: {e}", kind="format") from None
 
 
 _ARRAYS = ("times", "positions", "angles", "velocities", "angular_velocities", "energy")

@@ -29,10 +29,12 @@ def decode(data: bytes, page: int = 1) -> NDArray[np.uint8]:
     is refused by its header.
     """
     if not data:
-        raise InputError("", "the file is empty")
+        raise InputError("", "the file is empty", kind="empty")
     header = probe(data)
     if header is None:
-        raise InputError("", "not a picture", "PNG, JPEG, WebP, TIFF, BMP, HEIC and PDF are read")
+        raise InputError(
+            "", "not a picture", "PNG, JPEG, WebP, TIFF, BMP, HEIC and PDF are read", kind="format"
+        )
     if header.format == "heic":
         return _to_bgr8(_decode_heic(data))
     if header.format == "pdf":
@@ -51,6 +53,7 @@ def _check_size(width: int, height: int) -> None:
             "",
             f"a picture of {width} x {height} pixels; at most {MAX_PIXELS // 1_000_000} million are taken",
             "make it smaller: 2000 pixels across are plenty",
+            kind="size",
         )
 
 
@@ -65,7 +68,7 @@ def _decode_with_cv2(data: bytes, header: Header) -> NDArray[Any]:
     except cv2.error:
         picture = None
     if picture is None:
-        raise InputError("", f"a {header.format.upper()} picture that is damaged or cut short")
+        raise InputError("", f"a {header.format.upper()} picture that is damaged or cut short", kind="format")
     stored = (header.height, header.width)
     if header.format != "jpeg" and header.orientation > 1 and picture.shape[:2] == stored:
         picture = _upright(picture, header.orientation)
@@ -82,7 +85,7 @@ def _decode_heic(data: bytes) -> NDArray[Any]:
         _check_size(*file.size)
         picture = np.asarray(file)  # turned upright by the library
     except (ValueError, RuntimeError, SyntaxError, EOFError):
-        raise InputError("", "a HEIC picture that is damaged or cut short") from None
+        raise InputError("", "a HEIC picture that is damaged or cut short", kind="format") from None
     return picture if picture.ndim == 2 else picture[..., [2, 1, 0, *range(3, picture.shape[2])]]
 
 
@@ -94,7 +97,9 @@ def _decode_pdf(data: bytes, page: int) -> NDArray[Any]:
     try:
         document = pypdfium2.PdfDocument(data)
     except pypdfium2.PdfiumError:
-        raise InputError("", "a PDF file that is damaged, cut short or locked by a password") from None
+        raise InputError(
+            "", "a PDF file that is damaged, cut short or locked by a password", kind="format"
+        ) from None
     with document:
         if not 1 <= page <= len(document):
             raise InputError("", f"there is no page {page}: the file has {len(document)}")
@@ -105,7 +110,7 @@ def _decode_pdf(data: bytes, page: int) -> NDArray[Any]:
 
 
 def _lacks_extra(what: str) -> InputError:
-    return InputError("", f"{what} need the extra 'scan'", "pip install 'sketchsim[scan]'")
+    return InputError("", f"{what} need the extra 'scan'", "pip install 'sketchsim[scan]'", kind="extra")
 
 
 def _upright(picture: NDArray[Any], orientation: int) -> NDArray[Any]:
