@@ -59,16 +59,16 @@ def read(source: str) -> bytes:
         with open(source, "rb") as f:
             return _check_size(f.read(MAX_BYTES + 1), source)
     except FileNotFoundError:
-        raise InputError(source, "there is no such file") from None
+        raise InputError(source or "''", "there is no such file", kind="file") from None
     except IsADirectoryError:
-        raise InputError(source, "this is a folder, not a file") from None
+        raise InputError(source, "this is a folder, not a file", kind="file") from None
     except OSError as e:
-        raise InputError(source, (e.strerror or str(e)).lower()) from None
+        raise InputError(source, (e.strerror or str(e)).lower(), kind="file") from None
 
 
 def _check_size(data: bytes, source: str) -> bytes:
     if len(data) > MAX_BYTES:
-        raise InputError("" if source == STDIN else source, f"more than {MAX_BYTES >> 20} MB")
+        raise InputError("" if source == STDIN else source, f"more than {MAX_BYTES >> 20} MB", kind="size")
     return data
 
 
@@ -87,6 +87,8 @@ def load_bytes(data: bytes, source: str, way: Way) -> Loaded:
             )
         if way.readings:
             raise UsageError(f"--read: {source} is a scene, without strokes", "edit the scene itself")
+        if way.page != 1 or way.index:
+            raise UsageError(f"--page, --index: {source} is a scene, there are no others in it")
         return Loaded(Scene.from_json(data))
     recognition = recognize_bytes(data, way)
     return Loaded(recognition.scene, recognition)
@@ -99,7 +101,8 @@ def naming(source: str, wanted: bool) -> Iterator[None]:
         yield
     except InputError as e:
         if wanted and source not in e.path:
-            raise InputError(f"{source}: {e.path}" if e.path else source, e.problem, e.hint) from e
+            path = f"{source}: {e.path}" if e.path else source
+            raise InputError(path, e.problem, e.hint, kind=e.kind) from e
         raise
 
 

@@ -62,21 +62,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as e:  # --help and --version
         return e.code if isinstance(e.code, int) else FAILED
     except UsageError as e:
-        return _report(USAGE, str(e), e.hint)
+        return _report(USAGE, str(e), "usage", e.hint)
     except KeyboardInterrupt:
-        return _report(INTERRUPTED, "interrupted; no output was written")
+        return _report(INTERRUPTED, "interrupted; nothing was left half-written", "interrupted")
     except BrokenPipeError:
         # Whoever read standard output is gone; Python would complain again on closing it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _report(FAILED, "standard output was closed before all was written")
+        return _report(FAILED, "standard output was closed before all was written", "write")
     except Exception as e:
         return _report_exception(e)
     finally:
         restore()
 
 
-def _report(status: int, problem: str, hint: str = "") -> int:
-    error(problem, hint)
+def _report(status: int, problem: str, kind: str, hint: str = "") -> int:
+    error(problem, kind, hint)
     return status
 
 
@@ -84,15 +84,16 @@ def _report_exception(e: Exception) -> int:
     from sim.scene import InputError
 
     if isinstance(e, InputError):
-        return _report(BAD_INPUT, str(e), e.hint)
+        return _report(BAD_INPUT, str(e), e.kind, e.hint)
     if os.environ.get("SKETCHSIM_TRACEBACK"):
         raise e
     if isinstance(e, OSError) and e.strerror:
         where = f"{e.filename}: " if e.filename else ""
-        return _report(FAILED, f"{where}{e.strerror[:1].lower()}{e.strerror[1:]}")
+        return _report(FAILED, f"{where}{e.strerror[:1].lower()}{e.strerror[1:]}", "write")
     return _report(
         FAILED,
         f"something inside failed: {type(e).__name__}: {e}",
+        "inside",
         "set SKETCHSIM_TRACEBACK=1 to see where, and please report it",
     )
 

@@ -18,7 +18,10 @@ STDOUT = "-"
 
 def ending(target: str) -> str:
     """What is to be written: ``.mp4``, ``.json``, ...; standard output takes JSON."""
-    return ".json" if target == STDOUT else Path(target).suffix.lower()
+    if target == STDOUT:
+        return ".json"
+    path = Path(target)
+    return (path.suffix or (path.name if path.name.startswith(".") else "")).lower()
 
 
 def check_outputs(targets: Iterable[str], endings: Iterable[str], inputs: Iterable[str] = ()) -> None:

@@ -13,9 +13,9 @@ def note(text: str) -> None:
     print(f"note: {text}", file=sys.stderr)
 
 
-def error(problem: str, hint: str = "") -> None:
-    """A line about what is wrong, and one about what to do."""
-    print(f"error: {problem}", file=sys.stderr)
+def error(problem: str, kind: str, hint: str = "") -> None:
+    """A line about what is wrong, with its kind at the end, and one about what to do."""
+    print(f"error: {problem} [{kind}]", file=sys.stderr)
     if hint:
         print(f"hint: {hint}", file=sys.stderr)
 

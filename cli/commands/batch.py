@@ -43,6 +43,7 @@ class Done(NamedTuple):
     files: dict[str, bytes]
     notes: list[str]
     error: str = ""
+    kind: str = ""
     hint: str = ""
 
 
@@ -83,13 +84,13 @@ def run(options: argparse.Namespace) -> int:
         results = _on_cluster(options.scheduler, tasks, settings)
     else:
         results = _here(options.workers, tasks, settings)
-    bad = 0
+    kinds: set[str] = set()
     with Progress(not options.quiet) as progress, contextlib.closing(results):
         for k, done in enumerate(results):
             if done.error:
-                bad += 1
+                kinds.add(done.kind)
                 progress.clear()
-                error(f"{done.task}: {done.error}", done.hint)
+                error(f"{done.task}: {done.error}", done.kind, done.hint)
                 continue
             with Outputs() as files:
                 for ending, content in done.files.items():
@@ -99,7 +100,7 @@ def run(options: argparse.Namespace) -> int:
                 for text in done.notes:
                     note(f"{done.task}: {text}")
             progress.say(f"{k + 1} of {len(tasks)}", (k + 1) / len(tasks))
-    return 3 if bad else 0
+    return 1 if "inside" in kinds else 3 if kinds else 0
 
 
 def tasks_of(inputs: list[str]) -> list[Task]:
@@ -161,8 +162,10 @@ def work(task: Task, settings: dict[str, Any]) -> Done:
         data = read(task.source) if task.line is None else task.line
         loaded = load_bytes(data, task.source, Way(None if is_scene(data) else options.scale))
         motion = motion_of(loaded, options, notes.append)
-    except (InputError, RuntimeError) as e:
-        return Done(task.name, {}, notes, str(e), getattr(e, "hint", ""))
+    except InputError as e:
+        return Done(task.name, {}, notes, str(e), e.kind, e.hint)
+    except Exception as e:  # whatever is wrong with one, the others are run
+        return Done(task.name, {}, notes, f"something inside failed: {type(e).__name__}: {e}", "inside")
     content = getattr(motion, DATA[f".{options.data}"])()
     return Done(task.name, {".scene.json": loaded.scene.to_json(), f".{options.data}": content}, notes)
 

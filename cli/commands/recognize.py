@@ -52,7 +52,9 @@ def run(options: argparse.Namespace) -> int:
 
     data = read(options.input)
     if is_scene(data):
-        raise InputError("", f"{options.input} is a scene already", "`sketchsim simulate` runs it")
+        raise InputError(
+            "", f"{options.input} is a scene already", "`sketchsim simulate` runs it", kind="format"
+        )
     recognition = recognize_bytes(data, Way.of(options))
     for text in recognition.scene.notes:
         note(text)

@@ -92,17 +92,25 @@ def load_sketch(
         path = Path(source)
         size = path.stat().st_size
         if size > MAX_PICTURE_BYTES:  # said before reading: a huge file costs neither time nor memory
-            raise InputError("", f"{size / 1e6:.0f} MB; at most {MAX_PICTURE_BYTES / 1e6:.0f} MB are taken")
+            raise InputError(
+                "", f"{size / 1e6:.0f} MB; at most {MAX_PICTURE_BYTES / 1e6:.0f} MB are taken", kind="size"
+            )
         data = path.read_bytes()
     if not data.strip():
-        raise InputError("", "the input is empty")
+        raise InputError("", "the input is empty", kind="empty")
     kind = kind_of(data)
     if kind == "picture":
         from sketch.scan import read_picture
 
         return read_picture(data, page=page, stages=stages)
+    if page != 1:
+        raise InputError("", f"there is no page {page}: the input has one")
+    if stages is not None:
+        raise InputError("", "there are no stages of reading strokes", "stages are those of a picture")
     if kind == "scene":
-        raise InputError("", "this is a scene, not a sketch", "a scene needs no recognition: simulate it")
+        raise InputError(
+            "", "this is a scene, not a sketch", "a scene needs no recognition: simulate it", kind="format"
+        )
     if kind == "quickdraw":
         from sketch.formats import quickdraw
 
@@ -126,5 +134,6 @@ def load_sketch(
             "line 1 column 1",
             "not JSON, SVG or InkML, and no picture either",
             "drawings: JSON, Excalidraw, Quick, Draw!, SVG, InkML; pictures: PNG, JPEG, WebP, TIFF, HEIC, PDF",
+            kind="format",
         )
     return strokes.read(data)

@@ -56,7 +56,7 @@ def read(data: bytes) -> Sketch:
     """Read a file of ink. Raises InputError with the line of what is wrong."""
     root = parse_xml(data)
     if root.name != "ink":
-        raise InputError(root.place, "not InkML, whose outermost element is <ink>")
+        raise InputError(root.place, "not InkML, whose outermost element is <ink>", kind="format")
     named = {e.attributes["id"]: e for e in root.walk() if "id" in e.attributes}
     found: list[tuple[str, list[Row]]] = []
     for trace in _traces(root, PLAIN, named):
@@ -71,7 +71,7 @@ def read(data: bytes) -> Sketch:
             found.append((trace.element.attributes.get("id", ""), rows))
     whole = list({id(points): points for _, points in found}.values())
     if not whole:
-        raise InputError("", "there are no traces: nothing was drawn")
+        raise InputError("", "there are no traces: nothing was drawn", kind="empty")
     return strokes.from_objects({"strokes": [points for points in whole if points]})
 
 

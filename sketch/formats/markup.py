@@ -53,7 +53,9 @@ def parse_xml(data: bytes) -> Element:
     from xml.parsers import expat
 
     if len(data) > MAX_BYTES:
-        raise InputError("", f"{len(data) / 1e6:.0f} MB of XML; at most {MAX_BYTES / 1e6:.0f} MB are taken")
+        raise InputError(
+            "", f"{len(data) / 1e6:.0f} MB of XML; at most {MAX_BYTES / 1e6:.0f} MB are taken", kind="size"
+        )
     parser = expat.ParserCreate()
     parser.buffer_text = True
     top = Element("", {}, 0)
@@ -61,12 +63,15 @@ def parse_xml(data: bytes) -> Element:
 
     def refuse(name: str, *_: object) -> NoReturn:
         raise InputError(
-            f"line {parser.CurrentLineNumber}", f"the entity {name!r} is not taken", "save it as plain XML"
+            f"line {parser.CurrentLineNumber}",
+            f"the entity {name!r} is not taken",
+            "save it as plain XML",
+            kind="format",
         )
 
     def start(name: str, attributes: dict[str, str]) -> None:
         if len(inside) > MAX_DEPTH:
-            raise InputError(f"line {parser.CurrentLineNumber}", "elements nested too deeply")
+            raise InputError(f"line {parser.CurrentLineNumber}", "elements nested too deeply", kind="format")
         local = {key[key.find(":") + 1 :]: v for key, v in attributes.items() if key.startswith(KEPT)}
         local |= {key: v for key, v in attributes.items() if ":" not in key}
         element = Element(name.rpartition(":")[2], local, parser.CurrentLineNumber)
@@ -85,9 +90,11 @@ def parse_xml(data: bytes) -> Element:
         parser.Parse(data, True)
     except expat.ExpatError as e:
         problem = expat.ErrorString(e.code)
-        raise InputError(f"line {e.lineno} column {e.offset + 1}", f"not XML: {problem}") from None
+        raise InputError(
+            f"line {e.lineno} column {e.offset + 1}", f"not XML: {problem}", kind="format"
+        ) from None
     except (LookupError, ValueError) as e:  # an encoding that Python does not know
         if isinstance(e, InputError):
             raise
-        raise InputError("line 1", f"not XML: {e}") from None
+        raise InputError("line 1", f"not XML: {e}", kind="format") from None
     return top.children[0]

@@ -23,7 +23,7 @@ def read(data: bytes, index: int | None = None) -> Sketch:
         d = parse_json(lines[index or 0], strokes.MAX_BYTES)
     except InputError as e:
         place = e.path.replace("line 1 ", f"line {(index or 0) + 1} ", 1)
-        raise InputError(place, e.problem, e.hint) from None
+        raise InputError(place, e.problem, e.hint, kind=e.kind) from None
     drawing = d.get("drawing") if isinstance(d, dict) else None
     if not isinstance(drawing, list):
         raise InputError("drawing", "not a list of strokes", 'write {"drawing": [[[x, ...], [y, ...]], ...]}')

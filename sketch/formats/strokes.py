@@ -33,7 +33,7 @@ def read(data: bytes) -> Sketch:
     """Read stroke JSON. Raises InputError with the path to the bad element."""
     # Counted before any object is built: ten million points are refused in milliseconds.
     if len(data) <= MAX_BYTES and data.count(b",") > 4 * MAX_POINTS:
-        raise InputError("strokes", f"more than {MAX_POINTS} points", "resample the strokes")
+        raise InputError("strokes", f"more than {MAX_POINTS} points", "resample the strokes", kind="size")
     return from_objects(parse_json(data, MAX_BYTES))
 
 
@@ -45,26 +45,32 @@ def from_objects(d: Any) -> Sketch:
         raise InputError("", "a sketch is a JSON object with a list of strokes", _LAYOUT)
     found = d.get("format", "sketchsim-strokes")
     if found != "sketchsim-strokes":
-        raise InputError("format", f"{found!r} is not 'sketchsim-strokes'")
+        raise InputError("format", f"{found!r} is not 'sketchsim-strokes'", kind="format")
     if d.get("version", 1) != 1:
-        raise InputError("version", f"{d['version']!r} is not 1", "this program reads version 1")
+        raise InputError(
+            "version", f"{d['version']!r} is not 1", "this program reads version 1", kind="format"
+        )
     if "strokes" not in d:
         raise InputError("strokes", "missing", 'a sketch is {"strokes": [...]}; ' + _LAYOUT)
     raw = d["strokes"]
     if not isinstance(raw, list):
         raise InputError("strokes", "not a list", _LAYOUT)
     if not raw:
-        raise InputError("strokes", "there are no strokes: nothing was drawn")
+        raise InputError("strokes", "there are no strokes: nothing was drawn", kind="empty")
     if len(raw) > MAX_STROKES:
-        raise InputError("strokes", f"{len(raw)} strokes; at most {MAX_STROKES} are taken")
+        raise InputError("strokes", f"{len(raw)} strokes; at most {MAX_STROKES} are taken", kind="size")
     strokes = [_stroke(s, f"strokes[{i}]") for i, s in enumerate(raw)]
     total = sum(len(s.points) for s in strokes)
     if total > MAX_POINTS:
-        raise InputError("strokes", f"{total} points; at most {MAX_POINTS} are taken", "resample the strokes")
+        raise InputError(
+            "strokes", f"{total} points; at most {MAX_POINTS} are taken", "resample the strokes", kind="size"
+        )
     if not any(s.has_length for s in strokes):
         n = len(strokes[0].points)
         what = {0: "no points", 1: "only one point"}.get(n, f"{n} points at one place")
-        raise InputError("strokes[0].points", f"{what}: a stroke goes from one place to another")
+        raise InputError(
+            "strokes[0].points", f"{what}: a stroke goes from one place to another", kind="empty"
+        )
     return Sketch(
         strokes=strokes,
         width=_size(d, "width"),

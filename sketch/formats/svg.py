@@ -70,7 +70,9 @@ def read(data: bytes) -> Sketch:
         if not _is_paper(shape, width, height):
             found += _strokes(shape)
     if not found:
-        raise InputError("", "nothing is drawn in this SVG file", "text and pictures in it are not read")
+        raise InputError(
+            "", "nothing is drawn in this SVG file", "text and pictures in it are not read", kind="empty"
+        )
     page = {"width": width, "height": height} if width > 0 and height > 0 else {}
     sketch = strokes.from_objects({"strokes": found, **page})
     left = Counter(element.name for element in root.walk() if element.name in NO_INK)
@@ -84,11 +86,13 @@ def _parsed(root: Element) -> Any:
     try:
         from svgelements import SVG
     except ModuleNotFoundError:
-        raise InputError("", "SVG drawings need the extra 'svg'", "pip install 'sketchsim[svg]'") from None
+        raise InputError(
+            "", "SVG drawings need the extra 'svg'", "pip install 'sketchsim[svg]'", kind="extra"
+        ) from None
     try:
         return SVG.parse(io.BytesIO(tostring(_seen(root))), reify=True)
     except (ValueError, TypeError, ArithmeticError, LookupError, AttributeError, RecursionError) as e:
-        raise InputError("", f"an SVG file that cannot be understood: {e}") from None
+        raise InputError("", f"an SVG file that cannot be understood: {e}", kind="format") from None
 
 
 def _seen(element: Element) -> ET.Element:

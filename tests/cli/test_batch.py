@@ -86,7 +86,7 @@ def test_what_cannot_be_read_is_told_and_the_rest_is_run(
     assert main([*argv, "--workers", "2"]) == 3
     errors = capsys.readouterr().err.splitlines()
     assert errors[0].startswith("error: s1: bodies[0].")
-    assert errors[-1] == f"error: gone: {folder / 'gone.json'}: there is no such file"
+    assert errors[-1] == f"error: gone: {folder / 'gone.json'}: there is no such file [file]"
     assert sorted(path.name for path in out.iterdir()) == [
         "s0.csv",
         "s0.scene.json",
@@ -114,10 +114,10 @@ def test_wrong_usage(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["batch", str(folder), "-o", str(empty), "--workers", "0"]) == 2
     lines = [line for line in capsys.readouterr().err.splitlines() if line.startswith("error")]
     assert lines == [
-        "error: nothing to run: there are no drawings, pictures or scenes",
-        "error: the following arguments are required: -o",
-        f"error: -o {folder / 's0.json'}: this is not a folder",
-        "error: --workers: '0' is not a whole number from 1 to 1024",
+        "error: nothing to run: there are no drawings, pictures or scenes [usage]",
+        "error: the following arguments are required: -o [usage]",
+        f"error: -o {folder / 's0.json'}: this is not a folder [usage]",
+        "error: --workers: '0' is not a whole number from 1 to 1024 [usage]",
     ]
 
 

@@ -47,6 +47,8 @@ def stderr_of(capsys: pytest.CaptureFixture[str]) -> list[str]:
         (["--colour"], "error: unrecognized arguments: --colour"),
         (["-o", "run.avi"], "error: -o run.avi: '.avi' is not a known ending"),
         (["-o", "run"], "error: -o run: no ending"),
+        (["-o", ".avi"], "error: -o .avi: '.avi' is not a known ending"),
+        (["--page", "2"], "error: --page, --index: {scene} is a scene, there are no others in it"),
         (["-o", "nowhere/run.mp4"], "error: -o nowhere/run.mp4: there is no folder nowhere"),
         (["-o", "{scene}"], "error: -o {scene}: this is the input itself"),
         (["-o", "a.csv", "-o", "./a.csv"], "error: -o ./a.csv: given twice"),
@@ -63,7 +65,7 @@ def test_wrong_usage_is_told_before_any_work(
     before = scene_file.read_bytes()
     status = main(["simulate", str(scene_file), *(o.format(scene=scene_file) for o in options)])
     assert status == 2
-    assert stderr_of(capsys)[0] == line.format(scene=scene_file)
+    assert stderr_of(capsys)[0] == line.format(scene=scene_file) + " [usage]"
     assert [path.name for path in scene_file.parent.iterdir()] == ["scene.json"]
     assert scene_file.read_bytes() == before
 
@@ -72,7 +74,7 @@ def test_output_that_is_a_folder(scene_file: Path, capsys: pytest.CaptureFixture
     folder = scene_file.parent / "run.mp4"
     folder.mkdir()
     assert main(["simulate", str(scene_file), "-o", str(folder)]) == 2
-    assert stderr_of(capsys) == [f"error: -o {folder}: this is a folder"]
+    assert stderr_of(capsys) == [f"error: -o {folder}: this is a folder [usage]"]
 
 
 @pytest.mark.parametrize("argv", [[], ["dance"], ["simulate"], ["recognize"], ["bench", "everything"]])
@@ -85,23 +87,23 @@ def test_incomplete_command_lines_point_to_help(argv: list[str], capsys: pytest.
 
 
 BAD_SCENES = [
-    (b"", "error: the input is empty", 0),
-    (b"  \n", "error: the input is empty", 0),
-    (b'{"bodies": [}', "error: line 1 column 13: not JSON: expecting value", 0),
-    (b'{"bodies": 3}', "error: bodies: expected array, got int", 0),
+    (b"", "error: the input is empty [empty]", 0),
+    (b"  \n", "error: the input is empty [empty]", 0),
+    (b'{"bodies": [}', "error: line 1 column 13: not JSON: expecting value [format]", 0),
+    (b'{"bodies": 3}', "error: bodies: expected array, got int [value]", 0),
     (
         b'{"bodies": [{"id": "a", "shape": {"type": "circle", "radius": -1}, "position": [0, 0]}]}',
-        "error: bodies[0].shape.radius: -1 is not greater than 0",
+        "error: bodies[0].shape.radius: -1 is not greater than 0 [value]",
         0,
     ),
     (
         b'{"bodies": [{"id": "a", "shape": {"type": "circle", "radius": 1}, "position": [NaN, 0]}]}',
-        "error: bodies[0].position[0]: nan is not a finite number",
+        "error: bodies[0].position[0]: nan is not a finite number [value]",
         0,
     ),
     (
         b'{"bodies": [], "joints": [{"type": "pivot", "bodies": ["b", null], "position": [0, 0]}]}',
-        "error: joints[0].bodies[0]: there is no body 'b'",
+        "error: joints[0].bodies[0]: there is no body 'b' [value]",
         1,
     ),
 ]
@@ -127,16 +129,16 @@ def test_input_that_cannot_be_read(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main([command, "nothing.json"]) == 3
-    assert stderr_of(capsys) == ["error: nothing.json: there is no such file"]
+    assert stderr_of(capsys) == ["error: nothing.json: there is no such file [file]"]
     assert main([command, "."]) == 3
-    assert stderr_of(capsys) == ["error: .: this is a folder, not a file"]
+    assert stderr_of(capsys) == ["error: .: this is a folder, not a file [file]"]
     assert not list(tmp_path.iterdir())
 
 
 def test_recognizing_a_scene_says_what_to_do(scene_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["recognize", str(scene_file)]) == 3
     assert stderr_of(capsys) == [
-        f"error: {scene_file} is a scene already",
+        f"error: {scene_file} is a scene already [format]",
         "hint: `sketchsim simulate` runs it",
     ]
 
@@ -151,7 +153,7 @@ def test_failures_inside_are_one_line(
     monkeypatch.delenv("SKETCHSIM_TRACEBACK", raising=False)
     assert main(["simulate", str(scene_file), "-o", "-"]) == 1
     lines = stderr_of(capsys)
-    assert lines[0] == "error: something inside failed: ZeroDivisionError: division by zero"
+    assert lines[0] == "error: something inside failed: ZeroDivisionError: division by zero [inside]"
 
 
 def test_standard_input_and_output(
@@ -187,5 +189,5 @@ def test_a_motion_that_is_not_finite_is_not_drawn(
     monkeypatch.setattr("sim.engine.simulate", lose)
     out = scene_file.parent / "run.mp4"
     assert main(["simulate", str(scene_file), "-o", str(out), "--fps", "4"]) == 1
-    assert stderr_of(capsys)[0].endswith("the engine lost ball at 0.5 s")
+    assert stderr_of(capsys)[0].endswith("the engine lost ball at 0.5 s [inside]")
     assert not out.exists()

@@ -185,7 +185,7 @@ def test_follow_needs_a_body_that_is_there(scene_file: Path, capsys: pytest.Capt
     out = str(scene_file.parent / "run.mp4")
     assert main(["simulate", str(scene_file), "-o", out, "--camera", "follow:bell"]) == 2
     assert capsys.readouterr().err.splitlines() == [
-        "error: --camera: there is no body 'bell'",
+        "error: --camera: there is no body 'bell' [usage]",
         "hint: the bodies are: floor ball box",
     ]
     assert main(["simulate", str(scene_file), "-o", out, "--camera", "orbit"]) == 2

@@ -62,7 +62,7 @@ def test_a_failure_while_encoding_keeps_the_old_video(
 
     monkeypatch.setattr("cli.render.video.write_video", fail)
     assert main(["simulate", str(scene_file), "-o", str(video), "-o", str(video.with_suffix(".csv"))]) == 1
-    assert capsys.readouterr().err.rstrip().endswith("no space left on device")
+    assert capsys.readouterr().err.rstrip().endswith("no space left on device [write]")
     assert video.read_bytes() == b"the old video"
     assert sorted(os.listdir(scene_file.parent)) == ["run.mp4", "scene.json"]
 
@@ -83,7 +83,7 @@ def test_an_interrupted_run_leaves_nothing(scene_file: Path, number: signal.Sign
         _, stderr = process.communicate(timeout=30)
     # A shell sees 130 either way: Python ends itself by SIGINT where the interrupt came within an exec().
     assert process.returncode in (130, -signal.SIGINT)
-    assert stderr.splitlines()[-1] == "error: interrupted; no output was written"
+    assert stderr.splitlines()[-1] == "error: interrupted; nothing was left half-written [interrupted]"
     assert os.listdir(folder) == ["scene.json"]
 
 
@@ -95,7 +95,7 @@ def test_a_closed_pipe_is_no_traceback(scene_file: Path) -> None:
         assert process.stderr is not None
         stderr = process.stderr.read().decode()
     assert process.returncode == 1
-    assert stderr == "error: standard output was closed before all was written\n"
+    assert stderr == "error: standard output was closed before all was written [write]\n"
 
 
 @pytest.mark.parametrize("ending", ["mp4", "webm", "gif", "html", "json"])
@@ -112,5 +112,5 @@ def test_a_disk_that_is_full_is_told_and_nothing_is_left(scene_file: Path, endin
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
     )
     assert run.returncode == 1
-    assert run.stderr.splitlines()[-1] == f"error: {out}: file too large"
+    assert run.stderr.splitlines()[-1] == f"error: {out}: file too large [write]"
     assert os.listdir(scene_file.parent) == ["scene.json"]

@@ -53,6 +53,31 @@ def test_times_are_kept_where_every_point_has_one() -> None:
     np.testing.assert_array_equal(sketch.strokes[0].times, [30, 10, 10])
 
 
+def test_pages_and_stages_are_those_of_pictures() -> None:
+    data = json.dumps({"strokes": [SQUARE]}).encode()
+    for options in ({"page": 2}, {"index": 1}, {"stages": "seen"}):
+        with pytest.raises(InputError, match="there (is|are) no"):
+            load_sketch(data, **options)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("", "empty"),
+        ('{"strokes": []}', "empty"),
+        ('{"strokes": [', "format"),
+        ("a drawing", "format"),
+        ('{"format": "sketchsim-strokes", "version": 2, "strokes": []}', "format"),
+        ('{"strokes": [[[0, 0], [1, NaN]]]}', "value"),
+        ('{"strokes": [' + "[[0, 0], [1, 1]]," * 20_000 + "[]]}", "size"),
+    ],
+)
+def test_errors_have_a_kind(text: str, kind: str) -> None:
+    with pytest.raises(InputError) as e:
+        load_sketch(text.encode())
+    assert e.value.kind == kind
+
+
 def test_file_and_bytes_are_the_same(tmp_path: Path) -> None:
     path = tmp_path / "no-ending"
     path.write_bytes(json.dumps({"strokes": [SQUARE]}).encode())
