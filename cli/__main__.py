@@ -16,9 +16,13 @@ def entry() -> NoReturn:
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(100_000, 20, 20)
-    from cli.main import main
+    try:
+        from cli.main import main
 
-    status = main()
+        status = main()
+    except KeyboardInterrupt:  # while that is loaded; afterwards it answers for itself
+        print("error: interrupted; nothing was left half-written [interrupted]", file=sys.stderr)
+        status = 130
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

@@ -11,12 +11,19 @@ from itertools import pairwise
 
 __all__ = ["configure"]
 
-NEEDED = ("numpy", "msgspec", "cv2", "av", "scipy", "pymunk")
+NEEDED = {
+    "numpy": "numpy",
+    "msgspec": "msgspec",
+    "cv2": "opencv-python-headless",
+    "av": "av",
+    "scipy": "scipy",
+    "pymunk": "pymunk",
+}
 EXTRAS = {
-    "pillow_heif": "HEIC pictures: pip install 'sketchsim[scan]'",
-    "pypdfium2": "pages of PDF files: pip install 'sketchsim[scan]'",
-    "svgelements": "SVG drawings: pip install 'sketchsim[svg]'",
-    "distributed": "batch on a cluster: pip install 'sketchsim[cluster]'",
+    "pillow_heif": ("pillow-heif", "HEIC pictures: pip install 'sketchsim[scan]'"),
+    "pypdfium2": ("pypdfium2", "pages of PDF files: pip install 'sketchsim[scan]'"),
+    "svgelements": ("svgelements", "SVG drawings: pip install 'sketchsim[svg]'"),
+    "distributed": ("distributed", "batch on a cluster: pip install 'sketchsim[cluster]'"),
 }
 
 
@@ -28,7 +35,9 @@ def configure(p: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     print(f"Python {platform.python_version()} on {platform.system()} {platform.machine()}, {sys.executable}")
-    checks: list[tuple[str, Callable[[], str]]] = [(name, partial(_version, name)) for name in NEEDED]
+    checks: list[tuple[str, Callable[[], str]]] = [
+        (name, partial(_version, module, name)) for module, name in NEEDED.items()
+    ]
     checks += [
         ("engine", _try_engine),
         ("recognizer", _try_recognizer),
@@ -36,9 +45,9 @@ def run(options: argparse.Namespace) -> int:
         *((ending, partial(_try_codec, ending)) for ending in (".mp4", ".webm")),
     ]
     failed = sum(not _check(name, check) for name, check in checks)
-    for name, use in EXTRAS.items():
+    for module, (name, use) in EXTRAS.items():
         try:
-            print(f"ok       {name} {_version(name)}")
+            print(f"ok       {name} {_version(module, name)}")
         except ImportError:
             print(f"absent   {name}: {use}")
     return 1 if failed else 0
@@ -53,11 +62,16 @@ def _check(name: str, check: Callable[[], str]) -> bool:
     return True
 
 
-def _version(module: str) -> str:
+def _version(module: str, name: str) -> str:
+    """The version of an installed package that can be imported. cv2 is in four packages of different names."""
     import importlib
+    from importlib.metadata import PackageNotFoundError, version
 
     found = importlib.import_module(module)
-    return str(getattr(found, "__version__", getattr(found, "version", "")))
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return str(getattr(found, "__version__", "of unknown version"))
 
 
 def _try_engine() -> str:

@@ -56,7 +56,7 @@ def test_times_are_kept_where_every_point_has_one() -> None:
 def test_pages_and_stages_are_those_of_pictures() -> None:
     data = json.dumps({"strokes": [SQUARE]}).encode()
     for options in ({"page": 2}, {"index": 1}, {"stages": "seen"}):
-        with pytest.raises(InputError, match="there (is|are) no"):
+        with pytest.raises(InputError, match=r"there (is|are) no"):
             load_sketch(data, **options)  # type: ignore[arg-type]
 
 
