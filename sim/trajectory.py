@@ -81,26 +81,38 @@ class Trajectory:
         return msgspec.json.encode(self.to_dict()) + b"\n"
 
     def to_csv(self) -> bytes:
-        """One row a time and body."""
+        """One row a time and body; the last columns are the energy [J] of the whole scene at that time."""
         import csv
 
         out = io.StringIO()
         write = csv.writer(out, lineterminator="\n")
-        write.writerow(["time", "body", "x", "y", "angle", "vx", "vy", "angular_velocity"])
+        columns = ["time", "body", "x", "y", "angle", "vx", "vy", "angular_velocity"]
+        write.writerow([*columns, "kinetic", "potential", "energy"])
         rows = np.concatenate(
             [self.positions, self.angles[..., None], self.velocities, self.angular_velocities[..., None]],
             axis=2,
         ).tolist()
-        for time, bodies in zip(self.times.tolist(), rows, strict=True):
+        for time, bodies, energy in zip(self.times.tolist(), rows, self.energy.tolist(), strict=True):
             for name, values in zip(self.body_ids, bodies, strict=True):
-                write.writerow([time, name, *values])
+                write.writerow([time, name, *values, *energy])
         return out.getvalue().encode()
 
     def to_npz(self) -> bytes:
         out = io.BytesIO()
         arrays: dict[str, Any] = {name: getattr(self, name) for name in _ARRAYS}
-        np.savez(out, body_ids=np.array(self.body_ids, dtype=np.str_), **arrays)
+        np.savez(out, body_ids=np.array(self.body_ids, dtype=np.str_), events=self._event_table(), **arrays)
         return out.getvalue()
+
+    def _event_table(self) -> NDArray[Any]:
+        """The events as records with Event's fields; nobody is the empty id."""
+        longest = max(map(len, self.body_ids), default=0) or 1
+        record = [
+            ("time", "f8"), ("kind", "U13"), ("bodies", f"U{longest}", 2), ("point", "f8", 2), ("impulse", "f8", 2)
+        ]  # fmt: skip
+        rows = [
+            (e.time, e.kind, tuple(name or "" for name in e.bodies), e.point, e.impulse) for e in self.events
+        ]
+        return np.array(rows, dtype=record)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Trajectory:
@@ -111,19 +123,26 @@ class Trajectory:
 
             try:
                 with np.load(io.BytesIO(data), allow_pickle=False) as z:
-                    return cls(body_ids=z["body_ids"].tolist(), **{name: z[name] for name in _ARRAYS})
+                    arrays = {name: z[name] for name in _ARRAYS}
+                    table = z["events"].tolist() if "events" in z.files else []
+                    return cls(
+                        body_ids=z["body_ids"].tolist(), events=[_event(*row) for row in table], **arrays
+                    )
             except (KeyError, ValueError, OSError, zipfile.BadZipFile) as e:
                 raise InputError("", f"not a trajectory: {e}", kind="format") from None
         try:
             d = msgspec.json.decode(data)
-            arrays: dict[str, Any] = {name: np.array(d[name], dtype=np.float64) for name in _ARRAYS}
-            events = [
-                Event(e["time"], e["kind"], tuple(e["bodies"]), tuple(e["point"]), tuple(e["impulse"]))
-                for e in d.get("events", [])
-            ]
+            arrays = {name: np.array(d[name], dtype=np.float64) for name in _ARRAYS}
+            events = [_event(**event) for event in d.get("events", [])]
             return cls(body_ids=list(d["body_ids"]), events=events, **arrays)
         except (msgspec.DecodeError, KeyError, TypeError, ValueError) as e:
             raise InputError("", f"not a trajectory: {e}", kind="format") from None
+
+
+def _event(time: float, kind: str, bodies: Any, point: Any, impulse: Any) -> Event:
+    """From what files hold."""
+    first, second = bodies
+    return Event(time, kind, (first, second or None), (point[0], point[1]), (impulse[0], impulse[1]))
 
 
 _ARRAYS = ("times", "positions", "angles", "velocities", "angular_velocities", "energy")

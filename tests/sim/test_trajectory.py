@@ -42,8 +42,7 @@ def test_saved_and_loaded(run, tmp_path, kind):
     assert back.body_ids == run.body_ids
     for a, b in zip(arrays(run), arrays(back), strict=True):
         assert np.array_equal(a, b)
-    if kind == "json":
-        assert back.events == run.events
+    assert back.events == run.events
 
 
 def test_npz_has_the_promised_arrays(run):
@@ -56,6 +55,7 @@ def test_npz_has_the_promised_arrays(run):
             "angular_velocities",
             "body_ids",
             "energy",
+            "events",
         }
         assert z["positions"].shape == (4, 2, 2)
         assert z["energy"].shape == (4, 3)
@@ -73,6 +73,7 @@ def test_csv_has_one_row_a_time_and_body(run):
     assert len(rows) == 8
     assert [r["body"] for r in rows[:2]] == run.body_ids
     assert float(rows[5]["vy"]) == run.velocities[2, 1, 1]
+    assert [float(rows[5][name]) for name in ("kinetic", "potential", "energy")] == run.energy[2].tolist()
     assert len(run) == 4
 
 
