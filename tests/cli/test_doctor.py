@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from importlib.metadata import version
 
 import pytest
 
@@ -17,6 +18,11 @@ def test_doctor_tries_every_part(capsys: pytest.CaptureFixture[str]) -> None:
     fine = {line.split()[1] for line in lines if line.startswith("ok ")}
     assert fine >= {"numpy", "av", "engine", "recognizer", "pictures", ".mp4", ".webm"}
     assert not [line for line in lines if line.startswith("FAILED")]
+    named = [line.split() for line in lines if line.startswith("ok ")]
+    versions = {
+        words[1]: words[2] for words in named if words[1] in ("numpy", "scipy", "pymunk", "pypdfium2")
+    }
+    assert versions == {name: version(name) for name in versions}
 
 
 def test_doctor_says_which_part_fails(
