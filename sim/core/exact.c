@@ -167,7 +167,7 @@ static bool step_made_energy(const Exact *e, double from) {
         mass += e->world->body[member].mass;
     }
     double unseen = 10 * e->slack.speed, rounding = vlength(e->world->gravity) * e->tolerance + 0.5 * unseen * unseen;
-    return after - before > 0.01 * kinetic + mass * rounding;
+    return !(after - before <= 0.01 * kinetic + mass * rounding); /* nor one that is no number */
 }
 
 int island_advance(Exact *e, int32_t index, double from) {
@@ -191,7 +191,8 @@ int island_advance(Exact *e, int32_t index, double from) {
     for (int32_t k = 0; k < island->member_count; k++) {
         Track *track = &e->track[island->member[k]];
         record_motion(e->recorder, island->member[k], &track->motion, from);
-        track->motion = e->motion[k];
+        State state = motion_state(&track->motion, from);
+        track->motion = island->jammed ? motion_in_flight(&state, from, e->world->gravity) : e->motion[k];
         if (island->jammed) track->motion.end = from;
         e->changed[island->member[k]] = true;
     }

@@ -1,49 +1,114 @@
 #include "feature.h"
 
-/* Numbers of features: circles touch sides then corners, polygons a's corners on b's sides, then b's on a's. */
-int32_t feature_count(const World *world, int32_t shape_a, int32_t shape_b) {
-    int32_t a = world->shape[shape_a].count, b = world->shape[shape_b].count;
-    return a > 1 && b > 1 ? 2 * a * b : a > 1 || b > 1 ? 2 * a * b : 1;
+/* ---------------------------------------------------------------- which ones there are */
+
+ShapeWalk walk_shapes(const World *world, int32_t body_a, Pose at_a, int32_t body_b, Pose at_b, double margin) {
+    const Body *a = &world->body[body_a], *b = &world->body[body_b];
+    return (ShapeWalk){world, a, b, at_a, at_b, margin, a->first_shape, b->first_shape - 1};
 }
 
-bool feature_make(const World *world, int32_t shape_a, int32_t shape_b, int32_t number, Feature *out) {
-    const Shape *a = &world->shape[shape_a], *b = &world->shape[shape_b];
-    bool swap = a->count > 1 && b->count == 1; /* the circle is a */
-    if (a->count > 1 && b->count > 1 && number >= a->count * b->count) {
-        swap = true;
-        number -= a->count * b->count;
+bool next_shapes(ShapeWalk *w) {
+    for (; w->shape_a < w->a->first_shape + w->a->shape_count; w->shape_a++, w->shape_b = w->b->first_shape - 1)
+        while (++w->shape_b < w->b->first_shape + w->b->shape_count) {
+            const Shape *a = &w->world->shape[w->shape_a], *b = &w->world->shape[w->shape_b];
+            Vec apart = vsub(place(w->at_a, a->centre), place(w->at_b, b->centre));
+            double reach = a->reach + b->reach + w->margin;
+            if (vdot(apart, apart) <= reach * reach && world_collides(w->world, w->shape_a, w->shape_b)) return true;
+        }
+    return false;
+}
+
+/* Polygons' corners are tried on each other's sides, a circle's centre on a polygon's sides, then on its corners. */
+FeatureWalk walk_features(const World *world, int32_t shape_a, Pose at_a, int32_t shape_b, Pose at_b) {
+    bool round_a = world->shape[shape_a].count == 1, round_b = world->shape[shape_b].count == 1;
+    bool swap = !round_a && round_b;
+    return (FeatureWalk){.world = world,
+                         .above = INFINITY,
+                         .below = INFINITY,
+                         .beside = INFINITY,
+                         .point_shape = swap ? shape_b : shape_a,
+                         .other_shape = swap ? shape_a : shape_b,
+                         .point_at = swap ? at_b : at_a,
+                         .other_at = swap ? at_a : at_b,
+                         .on_sides = !(round_a && round_b),
+                         .i = -1,
+                         .turns_left = !(round_a && round_b)};
+}
+
+static void turn_round(FeatureWalk *w) {
+    w->turns_left--;
+    w->i = -1;
+    if (w->world->shape[w->point_shape].count == 1) {
+        w->on_sides = false;
+        return;
     }
-    if (swap) {
-        const Shape *s = a;
-        a = b, b = s;
-        int32_t k = shape_a;
-        shape_a = shape_b, shape_b = k;
+    int32_t shape = w->point_shape;
+    Pose at = w->point_at;
+    w->point_shape = w->other_shape, w->other_shape = shape;
+    w->point_at = w->other_at, w->other_at = at;
+}
+
+/* Go to the next pair of a point and what it is tried on. */
+static bool step_on(FeatureWalk *w) {
+    const Shape *points = &w->world->shape[w->point_shape], *other = &w->world->shape[w->other_shape];
+    if (w->i >= 0 && ++w->j < other->count) return true;
+    do w->i++;
+    while (w->i < points->count && points->count > 1 && w->world->side[points->first + w->i].reflex);
+    if (w->i == points->count) {
+        if (w->turns_left == 0) return false;
+        turn_round(w);
+        return step_on(w);
     }
-    bool is_side = b->count > 1 && number < a->count * b->count;
-    int32_t i = a->count > 1 ? number / b->count : 0, j = number % b->count;
-    const Vec *va = &world->vertex[a->first], *vb = &world->vertex[b->first];
-    const Side *side = &world->side[b->first];
-    *out = (Feature){.shape_a = shape_a,
-                     .shape_b = shape_b,
+    w->j = 0;
+    w->point = unplace(w->other_at, place(w->point_at, w->world->vertex[points->first + w->i]));
+    return true;
+}
+
+static bool is_in_reach(const FeatureWalk *w) {
+    const Shape *points = &w->world->shape[w->point_shape], *other = &w->world->shape[w->other_shape];
+    const Side *side = &w->world->side[other->first + w->j];
+    Vec rho = vsub(w->point, w->world->vertex[other->first + w->j]);
+    if (!w->on_sides) {
+        double far = w->above + points->radius + other->radius;
+        return vdot(rho, rho) <= far * far;
+    }
+    double gap = rho.x * side->along.y - rho.y * side->along.x - points->radius, foot = vdot(rho, side->along);
+    return gap <= w->above && gap >= -w->below && foot >= -w->beside && side->length - foot >= -w->beside;
+}
+
+static void make_feature(const FeatureWalk *w, Feature *out) {
+    const Shape *a = &w->world->shape[w->point_shape], *b = &w->world->shape[w->other_shape];
+    const Side *side = &w->world->side[b->first];
+    *out = (Feature){.shape_a = w->point_shape,
+                     .shape_b = w->other_shape,
                      .body_a = a->body,
                      .body_b = b->body,
-                     .index_a = i,
-                     .index_b = j,
-                     .is_side = is_side,
-                     .point_a = va[i],
-                     .point_b = vb[j],
+                     .index_a = w->i,
+                     .index_b = w->j,
+                     .is_side = w->on_sides,
+                     .is_corner = !w->on_sides && b->count > 1,
+                     .point_a = w->world->vertex[a->first + w->i],
+                     .point_b = w->world->vertex[b->first + w->j],
                      .radius_a = a->radius,
                      .radius_b = b->radius};
-    if (a->count > 1 && world->side[a->first + i].reflex) return false;
-    if (b->count == 1) return true;
-    out->along = side[j].along;
-    out->length = side[j].length;
-    if (is_side) return true;
-    out->is_corner = true;
-    out->along = side[(j + b->count - 1) % b->count].along;
-    out->after = side[j].along;
-    return !side[j].reflex;
+    if (b->count == 1) return;
+    out->along = side[w->on_sides ? w->j : (w->j + b->count - 1) % b->count].along;
+    out->after = side[w->j].along;
+    out->length = side[w->j].length;
 }
+
+bool next_feature(FeatureWalk *w, Feature *out) {
+    while (step_on(w)) {
+        const Shape *other = &w->world->shape[w->other_shape];
+        bool dent = !w->on_sides && other->count > 1 && w->world->side[other->first + w->j].reflex;
+        if (dent || !is_in_reach(w)) continue;
+        make_feature(w, out);
+        return true;
+    }
+    return false;
+}
+
+/* ---------------------------------------------------------------- their gaps */
 
 /* The velocity of a body's material point at arm r from its centre. */
 static Vec velocity_at(const Placed *b, Vec r) { return vmad(b->v, b->spin, vperp(r)); }

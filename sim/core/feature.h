@@ -39,9 +39,34 @@ typedef struct Placed {
 
 static inline Placed placed(const State *s) { return (Placed){pose(s->p, s->angle), s->v, s->spin}; }
 
-/* Ways in which two shapes can touch, to be counted through; false for a number that is none (a dent's corner). */
-int32_t feature_count(const World *world, int32_t shape_a, int32_t shape_b);
-bool feature_make(const World *world, int32_t shape_a, int32_t shape_b, int32_t number, Feature *out);
+/* A walk through the pairs of shapes of two bodies that can collide and whose disks are within `margin` of each other. */
+typedef struct ShapeWalk {
+    const World *world;
+    const Body *a, *b;
+    Pose at_a, at_b;
+    double margin;
+    int32_t shape_a, shape_b;
+} ShapeWalk;
+
+ShapeWalk walk_shapes(const World *world, int32_t body_a, Pose at_a, int32_t body_b, Pose at_b, double margin);
+bool next_shapes(ShapeWalk *walk);
+
+/* A walk through the ways in which two shapes can touch.  Those are passed over that are clearly out of reach: with a gap
+ * above `above` or below -`below`, or with a foot farther than `beside` from where it could touch [m].  The three may be
+ * changed on the way. */
+typedef struct FeatureWalk {
+    const World *world;
+    double above, below, beside;
+    int32_t point_shape, other_shape; /* whose points are tried on what of which */
+    Pose point_at, other_at;
+    bool on_sides;     /* else on corners */
+    int32_t i, j;      /* the next point, and side or corner */
+    Vec point;         /* i's, in the other's frame */
+    int32_t turns_left; /* of the two ways round */
+} FeatureWalk;
+
+FeatureWalk walk_features(const World *world, int32_t shape_a, Pose at_a, int32_t shape_b, Pose at_b);
+bool next_feature(FeatureWalk *walk, Feature *out);
 
 Gap feature_gap(const Feature *f, const Placed *a, const Placed *b);
 

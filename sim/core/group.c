@@ -75,7 +75,7 @@ static int find_contacts(Exact *e) {
                 const Touching *t = &e->touching[k];
                 const Shape *a = &e->world->shape[t->feature.shape_a], *b = &e->world->shape[t->feature.shape_b];
                 /* held where it is: lifting it out would feed energy to a body that rocks on the spot */
-                double hold = t->gap.gap < -4 * e->slack.gap ? -e->slack.gap : fmin(t->gap.gap, e->slack.gap);
+                double hold = fmin(t->gap.gap, e->slack.gap);
                 Contact contact = {.feature = t->feature,
                                    .friction = pair_friction(a, b),
                                    .elasticity = pair_elasticity(a, b),

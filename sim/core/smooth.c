@@ -464,7 +464,6 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
         }
         if (status != SIM_OK) return status;
         double error = step_error(s, system, step);
-        if (!isfinite(error) && tries > 60) return SIM_NOT_FINITE;
         double factor = !isfinite(error) ? 0.2 : error > 0 ? 0.9 / sqrt(sqrt(sqrt(error))) : 8;
         *h = step * fmin(fmax(factor, 0.2), 8);
         if (error <= 1 || step < 1e-12) break;

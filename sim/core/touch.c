@@ -14,6 +14,7 @@
 typedef struct PairBound {
     double steer_ab, steer_ba; /* |second derivative| of a gap with the side on b, on a */
     double closing; /* speed of the points against each other */
+    double passing; /* and as one sees them who turns with a or b */
 } PairBound;
 
 /* Bounds over [from, to] for two movers whose shapes reach ra and rb from their centres, and of which no two points are
@@ -33,6 +34,7 @@ static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, doubl
     PairBound bound;
     bound.closing = centres + ra * a.spin + rb * b.spin;
     apart += bound.closing * (to - from); /* |rho| at most */
+    bound.passing = bound.closing + fmax(a.spin, b.spin) * apart;
     bound.steer_ab = points + 2 * b.spin * bound.closing + swing_b * apart;
     bound.steer_ba = points + 2 * a.spin * bound.closing + swing_a * apart;
     return bound;
@@ -55,44 +57,6 @@ static double safe_step(double gap, double rate, double steer) {
     double root = sqrt(rate * rate + 2 * steer * gap);
     if (rate < 0) return 2 * gap / (root - rate);
     return steer > 0 ? (rate + root) / steer : INFINITY;
-}
-
-/* Whether a's corner sits on b's side from outside: both sides of the corner lead away from b's side, within the slack. */
-static bool leads_away(const World *world, const Feature *f, const Placed *a, Vec normal, const Slack *slack) {
-    const Shape *shape = &world->shape[f->shape_a];
-    if (shape->count == 1) return true;
-    const Vec *v = &world->vertex[shape->first];
-    int32_t n = shape->count;
-    for (int32_t k = 0; k < 2; k++) {
-        Vec to = vsub(v[(f->index_a + (k ? 1 : n - 1)) % n], v[f->index_a]);
-        if (vdot(turn(a->at, to), normal) < -1e-6 * vlength(to) - 4 * slack->gap) return false;
-    }
-    return true;
-}
-
-/* Whether b's side is the one that a's point is at: a point a little inside an outline is behind more than one of its
- * sides, and touches the one that it is least deep behind. */
-static bool is_nearest(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
-                       const Slack *slack) {
-    const Shape *shape = &world->shape[f->shape_b];
-    if (!f->is_side || g->gap >= 0) return true;
-    const Vec *v = &world->vertex[shape->first];
-    const Side *side = &world->side[shape->first];
-    Vec point = unplace(b->at, place(a->at, f->point_a));
-    int32_t n = shape->count, next = (f->index_b + 1) % n, before = (f->index_b + n - 1) % n;
-    for (int32_t k = 0; k < 2; k++) {
-        int32_t other = k ? next : before, corner = k ? next : f->index_b;
-        if (side[corner].reflex) continue;
-        Vec outward = vec(side[other].along.y, -side[other].along.x);
-        if (vdot(vsub(point, v[other]), outward) - f->radius_a > g->gap + slack->gap) return false;
-    }
-    return true;
-}
-
-/* Whether a feature whose gap has closed is a touch at all. */
-static bool faces(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
-                  const Slack *slack) {
-    return is_nearest(world, f, g, a, b, slack) && leads_away(world, f, a, g->normal, slack);
 }
 
 /* ---------------------------------------------------------------- the search */
@@ -136,7 +100,7 @@ static double grazing_step(const Slack *slack, double gap, double steer) {
 /* How far in time one feature is safe, from its gap now: 0 when it touches. */
 static double feature_step(const Slack *slack, const Gap *g, const PairBound *bound, double steer) {
     double aside = -g->margin - slack->gap; /* how far the foot is from where a touch could be */
-    double until_margin = aside > 0 ? aside / bound->closing : 0;
+    double until_margin = aside > 0 ? aside / bound->passing : 0;
     bool in_front = g->gap > -slack->deep;
     if (aside <= 0 && in_front && g->gap <= slack->root && g->rate < -slack->speed) return 0;
     if (aside <= 0 && in_front && g->gap < -0.25 * slack->gap && g->rate < -1e-6 * slack->speed) return 0;
@@ -151,23 +115,22 @@ static double feature_step(const Slack *slack, const Gap *g, const PairBound *bo
 }
 
 /* The safe step of all features of two shapes. */
-static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, const Placed *pa, const Placed *pb,
+static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, const Placed *pa, const Placed *pb,
                           const PairBound *bound, double passing, double step) {
-    int32_t ia = (int32_t)(sa - s->world->shape), ib = (int32_t)(sb - s->world->shape);
-    Vec apart = vsub(place(pa->at, sa->centre), place(pb->at, sb->centre));
-    double discs = vlength(apart) - sa->reach - sb->reach;
-    if (discs > step * bound->closing) return step;
-    int32_t count = feature_count(s->world, ia, ib);
-    for (int32_t k = 0; k < count && step > 0; k++) {
-        Feature f;
-        if (!feature_make(s->world, ia, ib, k, &f) || is_closed(s, &f)) continue;
+    FeatureWalk walk = walk_features(s->world, shape_a, pa->at, shape_b, pb->at);
+    for (Feature f; step > 0;) {
+        double way = (1 + 1e-9) * step * bound->passing + s->slack->gap; /* what is farther cannot touch in the step */
+        walk.above = walk.beside = way;
+        walk.below = way + s->slack->deep;
+        if (!next_feature(&walk, &f)) break;
+        if (is_closed(s, &f)) continue;
         bool a_first = f.body_a == s->a.body;
         Gap g = feature_gap(&f, a_first ? pa : pb, a_first ? pb : pa);
         double steer =
             f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
         double own = feature_step(s->slack, &g, bound, steer);
         const Placed *point_of = a_first ? pa : pb, *side_of = a_first ? pb : pa;
-        if (own <= 0 && !faces(s->world, &f, &g, point_of, side_of, s->slack)) own = passing;
+        if (own <= 0 && !feature_faces(s->world, &f, &g, point_of, side_of, s->slack)) own = passing;
         if (own < passing && is_held(s, &f, &g, pa, pb)) own = passing;
         if (g.gap < -s->slack->gap && g.margin < -s->slack->gap) own = fmax(own, passing); /* in behind, and beside */
         step = fmin(step, own);
@@ -175,21 +138,29 @@ static double shapes_step(const Search *s, const Shape *sa, const Shape *sb, con
     return step;
 }
 
-static double search_shapes(const Search *s, const Shape *sa, const Shape *sb, double from, double to) {
-    double t = from, horizon = from;
+/* How far apart the disks about two shapes are. */
+static double disks_apart(const Shape *a, const Placed *pa, const Shape *b, const Placed *pb) {
+    return vlength(vsub(place(pa->at, a->centre), place(pb->at, b->centre))) - a->reach - b->reach;
+}
+
+static double search_shapes(const Search *s, int32_t shape_a, int32_t shape_b, double from, double to) {
+    const Shape *a = &s->world->shape[shape_a], *b = &s->world->shape[shape_b];
+    double t = from, horizon = from, ra = vlength(a->centre) + a->reach, rb = vlength(b->centre) + b->reach;
     PairBound bound = {0};
-    double ra = vlength(sa->centre) + sa->reach, rb = vlength(sb->centre) + sb->reach;
     for (int32_t steps = 0; steps < MAX_STEPS; steps++) {
         State state_a = motion_state(s->a.motion, t), state_b = motion_state(s->b.motion, t);
         Placed pa = placed(&state_a), pb = placed(&state_b);
+        double apart = disks_apart(a, &pa, b, &pb);
         if (t >= horizon) {
             horizon = look_ahead(s->a.motion, s->b.motion, t, to);
-            double apart = vlength(vsub(place(pa.at, sa->centre), place(pb.at, sb->centre))) + sa->reach + sb->reach;
-            bound = pair_bound(s->a.motion, ra, s->b.motion, rb, apart, t, horizon);
+            bound = pair_bound(s->a.motion, ra, s->b.motion, rb, apart + 2 * (a->reach + b->reach), t, horizon);
             if (bound.closing == 0) return INFINITY;
         }
-        /* what passes by once mostly goes on to: longer steps, the longer it lasts */
-        double step = shapes_step(s, sa, sb, &pa, &pb, &bound, PASSING * (1 + steps), horizon - t);
+        if (t == from && apart <= 0 && shapes_too_deep(s->world, shape_a, pa.at, shape_b, pb.at, s->slack)) return t;
+        double step = horizon - t;
+        if (apart <=
+            step * bound.closing) /* what passes by once mostly goes on to: longer steps, the longer it lasts */
+            step = shapes_step(s, shape_a, shape_b, &pa, &pb, &bound, PASSING * (1 + steps), step);
         if (step <= 0) return t;
         if (steps > PATIENCE)
             step = fmax(step, 0.5 * s->slack->gap / bound.closing); /* creeping: half a slack at least */
@@ -203,145 +174,10 @@ static double search_shapes(const Search *s, const Shape *sa, const Shape *sb, d
 double first_touch(const World *world, Mover a, Mover b, double from, double to, const Slack *slack,
                    const Feature *const *closed, int32_t closed_count) {
     Search s = {world, slack, a, b, closed, closed_count};
-    const Body *body_a = &world->body[a.body], *body_b = &world->body[b.body];
+    Pose anywhere = {{0, 0}, 1, 0};
+    ShapeWalk shapes = walk_shapes(world, a.body, anywhere, b.body, anywhere, INFINITY);
     double best = INFINITY;
-    for (int32_t i = body_a->first_shape; i < body_a->first_shape + body_a->shape_count; i++)
-        for (int32_t j = body_b->first_shape; j < body_b->first_shape + body_b->shape_count; j++) {
-            if (!world_collides(world, i, j)) continue;
-            double t = search_shapes(&s, &world->shape[i], &world->shape[j], from, fmin(to, best));
-            if (t < best) best = t;
-        }
+    while (next_shapes(&shapes))
+        best = fmin(best, search_shapes(&s, shapes.shape_a, shapes.shape_b, from, fmin(to, best)));
     return best;
-}
-
-/* ---------------------------------------------------------------- touching now */
-
-/* Drop the one of two touches at one point that says nothing new: the same touch seen from both sides, or a corner on
- * a corner, where the side that is approached faster, else the outer one, holds. */
-static bool merge_same_point(Touching *out, int32_t count, const Touching *found, double near) {
-    for (int32_t k = 0; k < count; k++) {
-        Touching *had = &out[k];
-        bool same_pair =
-            (had->feature.shape_a == found->feature.shape_a && had->feature.shape_b == found->feature.shape_b) ||
-            (had->feature.shape_a == found->feature.shape_b && had->feature.shape_b == found->feature.shape_a);
-        if (!same_pair || vlength(vsub(had->gap.point, found->gap.point)) > near) continue;
-        if (fabs(vdot(had->gap.normal, found->gap.normal)) < 1 - 1e-9) {
-            double faster = had->gap.rate - found->gap.rate;
-            if (faster > near || (faster > -near && found->gap.gap > had->gap.gap + 1e-3 * near)) *had = *found;
-        }
-        return true;
-    }
-    return false;
-}
-
-int32_t touching_now(const World *world, int32_t body_a, const State *state_a, int32_t body_b, const State *state_b,
-                     const Slack *slack, Touching *out, int32_t capacity) {
-    const Body *a = &world->body[body_a], *b = &world->body[body_b];
-    Placed pa = placed(state_a), pb = placed(state_b);
-    int32_t count = 0;
-    for (int32_t i = a->first_shape; i < a->first_shape + a->shape_count; i++)
-        for (int32_t j = b->first_shape; j < b->first_shape + b->shape_count; j++) {
-            const Shape *sa = &world->shape[i], *sb = &world->shape[j];
-            Vec apart = vsub(place(pa.at, sa->centre), place(pb.at, sb->centre));
-            double reach = sa->reach + sb->reach + slack->gap;
-            if (vdot(apart, apart) > reach * reach || !world_collides(world, i, j)) continue;
-            int32_t features = feature_count(world, i, j);
-            for (int32_t k = 0; k < features; k++) {
-                Touching t;
-                if (!feature_make(world, i, j, k, &t.feature)) continue;
-                bool a_first = t.feature.body_a == body_a;
-                const Placed *point_of = a_first ? &pa : &pb;
-                t.gap = feature_gap(&t.feature, point_of, a_first ? &pb : &pa);
-                if (t.gap.gap > slack->gap || t.gap.gap < -slack->deep || t.gap.margin < -slack->gap) continue;
-                if (!faces(world, &t.feature, &t.gap, point_of, a_first ? &pb : &pa, slack)) continue;
-                if (count < capacity && !merge_same_point(out, count, &t, 8 * slack->gap)) out[count++] = t;
-            }
-        }
-    return count;
-}
-
-/* ---------------------------------------------------------------- too deep */
-
-/* How deep a disk about a point of the shape's frame is in a polygon; negative outside. */
-static double depth_in(const World *world, const Shape *shape, Vec point, double radius) {
-    const Vec *v = &world->vertex[shape->first];
-    const Side *side = &world->side[shape->first];
-    bool inside = false;
-    double nearest = INFINITY;
-    for (int32_t i = 0; i < shape->count; i++) {
-        Vec a = v[i], b = v[(i + 1) % shape->count], to = vsub(point, a);
-        double foot = fmin(fmax(vdot(to, side[i].along), 0), side[i].length);
-        nearest = fmin(nearest, vlength(vsub(to, vscale(side[i].along, foot))));
-        if ((a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) * (b.x - a.x) / (b.y - a.y))
-            inside = !inside;
-    }
-    return inside ? nearest + radius : radius - nearest;
-}
-
-/* How deep the corners, or the circle, of a are in b. */
-static double corners_depth(const World *world, const Shape *a, Pose at_a, const Shape *b, Pose at_b) {
-    double deepest = -INFINITY;
-    for (int32_t i = 0; i < a->count; i++) {
-        Vec point = unplace(at_b, place(at_a, world->vertex[a->first + i]));
-        double depth = b->count > 1 ? depth_in(world, b, point, a->radius)
-                                    : a->radius + b->radius - vlength(vsub(point, world->vertex[b->first]));
-        deepest = fmax(deepest, depth);
-    }
-    return deepest;
-}
-
-bool too_deep(const World *world, int32_t body_a, int32_t body_b, const Slack *slack) {
-    const Body *a = &world->body[body_a], *b = &world->body[body_b];
-    Pose at_a = body_pose(a), at_b = body_pose(b);
-    for (int32_t i = a->first_shape; i < a->first_shape + a->shape_count; i++)
-        for (int32_t j = b->first_shape; j < b->first_shape + b->shape_count; j++) {
-            const Shape *sa = &world->shape[i], *sb = &world->shape[j];
-            Vec apart = vsub(place(at_a, sa->centre), place(at_b, sb->centre));
-            if (vlength(apart) > sa->reach + sb->reach || !world_collides(world, i, j)) continue;
-            if (fmax(corners_depth(world, sa, at_a, sb, at_b), corners_depth(world, sb, at_b, sa, at_a)) >
-                0.9 * slack->deep)
-                return true;
-        }
-    return false;
-}
-
-/* ---------------------------------------------------------------- surely apart */
-
-/* Whether all of a is in front of one side of b, which is an outline that bulges everywhere. */
-static bool in_front_of_a_side(const World *world, const Shape *a, Pose at_a, const Shape *b, Pose at_b,
-                               double rounding) {
-    const Vec *v = &world->vertex[b->first];
-    const Side *side = &world->side[b->first];
-    for (int32_t j = 0; j < b->count && b->count > 1; j++) {
-        Vec outward = vec(side[j].along.y, -side[j].along.x);
-        double least = INFINITY;
-        for (int32_t i = 0; i < a->count && least >= -rounding; i++) {
-            Vec point = unplace(at_b, place(at_a, world->vertex[a->first + i]));
-            least = fmin(least, vdot(vsub(point, v[j]), outward) - a->radius);
-        }
-        if (least >= -rounding) return true;
-    }
-    return false;
-}
-
-bool surely_apart(const World *world, int32_t body_a, int32_t body_b, double rounding) {
-    const Body *a = &world->body[body_a], *b = &world->body[body_b];
-    Pose at_a = body_pose(a), at_b = body_pose(b);
-    for (int32_t i = a->first_shape; i < a->first_shape + a->shape_count; i++)
-        for (int32_t j = b->first_shape; j < b->first_shape + b->shape_count; j++) {
-            const Shape *sa = &world->shape[i], *sb = &world->shape[j];
-            Vec apart = vsub(place(at_a, sa->centre), place(at_b, sb->centre));
-            if (vlength(apart) >= sa->reach + sb->reach || !world_collides(world, i, j)) continue;
-            bool round_a = sa->count == 1, round_b = sb->count == 1;
-            if (round_a && !round_b &&
-                depth_in(world, sb, unplace(at_b, place(at_a, sa->centre)), sa->radius) <= rounding)
-                continue;
-            if (round_b && !round_a &&
-                depth_in(world, sa, unplace(at_a, place(at_b, sb->centre)), sb->radius) <= rounding)
-                continue;
-            if (in_front_of_a_side(world, sa, at_a, sb, at_b, rounding)) continue;
-            if (in_front_of_a_side(world, sb, at_b, sa, at_a, rounding)) continue;
-            return false;
-        }
-    return true;
 }

@@ -1,4 +1,4 @@
-/* When two bodies first touch, and where they touch now. */
+/* When two bodies first touch (touch.c), and what they are to each other now (meet.c). */
 #ifndef TOUCH_H
 #define TOUCH_H
 
@@ -10,7 +10,7 @@ typedef struct Slack {
     double speed; /* a speed this small counts as none [m/s] */
     double root;  /* a gap is solved for to this [m]: rounding */
     double
-        deep; /* overlaps up to this are contacts that rounding has pushed in; beyond, the point is behind the side [m] */
+        deep; /* overlaps up to this are contacts that were pushed in; what is deeper is for the crowd to let out [m] */
 } Slack;
 
 typedef struct Touching {
@@ -25,19 +25,26 @@ typedef struct Mover {
 } Mover;
 
 /* The first time in [from, to] at which a feature of the two bodies that is not among `closed` touches; INFINITY if none.
- * A search that takes too many steps gives up at a time before which nothing touches, and returns that. */
+ * `from` if they are too deep in each other then.  A search that takes too many steps gives up at a time before which
+ * nothing touches, and returns that. */
 double first_touch(const World *world, Mover a, Mover b, double from, double to, const Slack *slack,
                    const Feature *const *closed, int32_t closed_count);
+
+/* Whether a feature whose gap has closed is a touch at all: the point sits on the side from outside, and that side is the
+ * one that it came in through. */
+bool feature_faces(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
+                   const Slack *slack);
 
 /* The features of two bodies that touch now, at most `capacity`; their number is returned.  Where a pair of features
  * is the same touch seen from both sides, one is given. */
 int32_t touching_now(const World *world, int32_t body_a, const State *a, int32_t body_b, const State *b,
                      const Slack *slack, Touching *out, int32_t capacity);
 
+/* Whether two shapes, or any of two bodies, overlap farther than what is still held as a contact. */
+bool shapes_too_deep(const World *world, int32_t shape_a, Pose at_a, int32_t shape_b, Pose at_b, const Slack *slack);
+bool too_deep(const World *world, int32_t body_a, int32_t body_b, const Slack *slack);
+
 /* Whether two bodies surely do not overlap by more than `rounding`: some side of theirs, or their circles, keep them apart. */
 bool surely_apart(const World *world, int32_t body_a, int32_t body_b, double rounding);
-
-/* Whether two bodies overlap farther than what is still held as a contact. */
-bool too_deep(const World *world, int32_t body_a, int32_t body_b, const Slack *slack);
 
 #endif

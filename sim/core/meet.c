@@ -1,0 +1,166 @@
+/* What two bodies are to each other at one moment: where they touch, whether they overlap, whether they are apart. */
+#include "touch.h"
+
+/* ---------------------------------------------------------------- what is a touch */
+
+/* Whether a's corner sits on something with this normal from outside: both sides of the corner lead away, within the slack. */
+static bool leads_away(const World *world, const Feature *f, const Placed *a, Vec normal, const Slack *slack) {
+    const Shape *shape = &world->shape[f->shape_a];
+    if (shape->count == 1) return true;
+    const Vec *v = &world->vertex[shape->first];
+    int32_t n = shape->count;
+    for (int32_t k = 0; k < 2; k++) {
+        Vec to = vsub(v[(f->index_a + (k ? 1 : n - 1)) % n], v[f->index_a]);
+        if (vdot(turn(a->at, to), normal) < -1e-6 * vlength(to) - 4 * slack->gap) return false;
+    }
+    return true;
+}
+
+/* Whether b's side is the one that a's point is at: a point a little inside an outline is behind more than one of its
+ * sides, and touches the one that it is least deep behind, of those that it can have come in through. */
+static bool is_nearest(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
+                       const Slack *slack) {
+    const Shape *shape = &world->shape[f->shape_b];
+    if (!f->is_side || g->gap >= 0) return true;
+    const Vec *v = &world->vertex[shape->first];
+    const Side *side = &world->side[shape->first];
+    Vec point = unplace(b->at, place(a->at, f->point_a));
+    int32_t n = shape->count, next = (f->index_b + 1) % n, before = (f->index_b + n - 1) % n;
+    for (int32_t k = 0; k < 2; k++) {
+        int32_t other = k ? next : before, corner = k ? next : f->index_b;
+        if (side[corner].reflex) continue;
+        Vec outward = vec(side[other].along.y, -side[other].along.x);
+        bool less_deep = vdot(vsub(point, v[other]), outward) - f->radius_a > g->gap + slack->gap;
+        if (less_deep && leads_away(world, f, a, turn(b->at, outward), slack)) return false;
+    }
+    return true;
+}
+
+bool feature_faces(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
+                   const Slack *slack) {
+    return is_nearest(world, f, g, a, b, slack) && leads_away(world, f, a, g->normal, slack);
+}
+
+/* ---------------------------------------------------------------- touching now */
+
+/* Drop the one of two touches at one point that says nothing new: the same touch seen from both sides, or a corner on
+ * a corner, where the side that is approached faster, else the outer one, holds. */
+static bool merge_same_point(Touching *out, int32_t count, const Touching *found, double near) {
+    for (int32_t k = 0; k < count; k++) {
+        Touching *had = &out[k];
+        bool same_pair =
+            (had->feature.shape_a == found->feature.shape_a && had->feature.shape_b == found->feature.shape_b) ||
+            (had->feature.shape_a == found->feature.shape_b && had->feature.shape_b == found->feature.shape_a);
+        if (!same_pair || vlength(vsub(had->gap.point, found->gap.point)) > near) continue;
+        if (fabs(vdot(had->gap.normal, found->gap.normal)) < 1 - 1e-9) {
+            double faster = had->gap.rate - found->gap.rate;
+            if (faster > near || (faster > -near && found->gap.gap > had->gap.gap + 1e-3 * near)) *had = *found;
+        }
+        return true;
+    }
+    return false;
+}
+
+int32_t touching_now(const World *world, int32_t body_a, const State *state_a, int32_t body_b, const State *state_b,
+                     const Slack *slack, Touching *out, int32_t capacity) {
+    Placed pa = placed(state_a), pb = placed(state_b);
+    ShapeWalk shapes = walk_shapes(world, body_a, pa.at, body_b, pb.at, slack->gap);
+    int32_t count = 0;
+    while (next_shapes(&shapes)) {
+        FeatureWalk walk = walk_features(world, shapes.shape_a, pa.at, shapes.shape_b, pb.at);
+        walk.above = walk.beside = 2 * slack->gap; /* rounding is less than the slack */
+        walk.below = 2 * slack->deep;
+        for (Touching t; next_feature(&walk, &t.feature);) {
+            bool a_first = t.feature.body_a == body_a;
+            const Placed *point_of = a_first ? &pa : &pb, *other = a_first ? &pb : &pa;
+            t.gap = feature_gap(&t.feature, point_of, other);
+            if (t.gap.gap > slack->gap || t.gap.gap < -slack->deep || t.gap.margin < -slack->gap) continue;
+            if (!feature_faces(world, &t.feature, &t.gap, point_of, other, slack)) continue;
+            if (count < capacity && !merge_same_point(out, count, &t, 8 * slack->gap)) out[count++] = t;
+        }
+    }
+    return count;
+}
+
+/* ---------------------------------------------------------------- depth */
+
+/* How deep a disk about a point of the shape's frame is in a polygon; negative outside. */
+static double depth_in(const World *world, const Shape *shape, Vec point, double radius) {
+    const Vec *v = &world->vertex[shape->first];
+    const Side *side = &world->side[shape->first];
+    bool inside = false;
+    double nearest = INFINITY;
+    for (int32_t i = 0; i < shape->count; i++) {
+        Vec a = v[i], b = v[(i + 1) % shape->count], to = vsub(point, a);
+        double foot = fmin(fmax(vdot(to, side[i].along), 0), side[i].length);
+        nearest = fmin(nearest, vlength(vsub(to, vscale(side[i].along, foot))));
+        if ((a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) * (b.x - a.x) / (b.y - a.y))
+            inside = !inside;
+    }
+    return inside ? nearest + radius : radius - nearest;
+}
+
+/* How deep the corners, or the circle, of a are in b. */
+static double corners_depth(const World *world, const Shape *a, Pose at_a, const Shape *b, Pose at_b) {
+    double deepest = -INFINITY;
+    for (int32_t i = 0; i < a->count; i++) {
+        Vec point = unplace(at_b, place(at_a, world->vertex[a->first + i]));
+        double depth = b->count > 1 ? depth_in(world, b, point, a->radius)
+                                    : a->radius + b->radius - vlength(vsub(point, world->vertex[b->first]));
+        deepest = fmax(deepest, depth);
+    }
+    return deepest;
+}
+
+bool shapes_too_deep(const World *world, int32_t shape_a, Pose at_a, int32_t shape_b, Pose at_b, const Slack *slack) {
+    const Shape *a = &world->shape[shape_a], *b = &world->shape[shape_b];
+    double limit = 0.9 * slack->deep;
+    return corners_depth(world, a, at_a, b, at_b) > limit || corners_depth(world, b, at_b, a, at_a) > limit;
+}
+
+bool too_deep(const World *world, int32_t body_a, int32_t body_b, const Slack *slack) {
+    Pose at_a = body_pose(&world->body[body_a]), at_b = body_pose(&world->body[body_b]);
+    ShapeWalk shapes = walk_shapes(world, body_a, at_a, body_b, at_b, 0);
+    while (next_shapes(&shapes))
+        if (shapes_too_deep(world, shapes.shape_a, at_a, shapes.shape_b, at_b, slack)) return true;
+    return false;
+}
+
+/* ---------------------------------------------------------------- surely apart */
+
+/* Whether all of a is in front of one side of b, which is an outline that bulges everywhere. */
+static bool in_front_of_a_side(const World *world, const Shape *a, Pose at_a, const Shape *b, Pose at_b,
+                               double rounding) {
+    const Vec *v = &world->vertex[b->first];
+    const Side *side = &world->side[b->first];
+    for (int32_t j = 0; j < b->count && b->count > 1; j++) {
+        Vec outward = vec(side[j].along.y, -side[j].along.x);
+        double least = INFINITY;
+        for (int32_t i = 0; i < a->count && least >= -rounding; i++) {
+            Vec point = unplace(at_b, place(at_a, world->vertex[a->first + i]));
+            least = fmin(least, vdot(vsub(point, v[j]), outward) - a->radius);
+        }
+        if (least >= -rounding) return true;
+    }
+    return false;
+}
+
+/* Whether a disk about the centre of its shape is outside of a polygon. */
+static bool is_outside(const World *world, const Shape *disk, Pose at_disk, const Shape *b, Pose at_b,
+                       double rounding) {
+    if (disk->count > 1 || b->count == 1) return false;
+    return depth_in(world, b, unplace(at_b, place(at_disk, disk->centre)), disk->radius) <= rounding;
+}
+
+bool surely_apart(const World *world, int32_t body_a, int32_t body_b, double rounding) {
+    Pose at_a = body_pose(&world->body[body_a]), at_b = body_pose(&world->body[body_b]);
+    ShapeWalk shapes = walk_shapes(world, body_a, at_a, body_b, at_b, 0);
+    while (next_shapes(&shapes)) {
+        const Shape *a = &world->shape[shapes.shape_a], *b = &world->shape[shapes.shape_b];
+        bool apart = is_outside(world, a, at_a, b, at_b, rounding) || is_outside(world, b, at_b, a, at_a, rounding) ||
+                     in_front_of_a_side(world, a, at_a, b, at_b, rounding) ||
+                     in_front_of_a_side(world, b, at_b, a, at_a, rounding);
+        if (!apart) return false;
+    }
+    return true;
+}
