@@ -33,7 +33,7 @@ def closing_chains(page: Page, complete: Set[int]) -> list[Chain]:
     """
     pieces = page.pieces
     loose = [p for p in pieces if p.index not in complete]
-    near = _near_ends(loose)
+    near = _near_ends(page, loose)
     best: dict[tuple[int, ...], tuple[float, Chain]] = {(i,): (0.0, [(i, False)]) for i in sorted(complete)}
 
     steps = 0  # from one piece: in shading every end has many others near it
@@ -54,7 +54,7 @@ def closing_chains(page: Page, complete: Set[int]) -> list[Chain]:
         if len(chain) == MOST_PARTS:
             return
         for d, j, e in near.get((last, out), ()):
-            if j > first and all(j != i for i, _ in chain):
+            if j > first and all(j != i for i, _ in chain) and page.apart(j, (i for i, _ in chain)):
                 longer = ink + pieces[j].length
                 if gaps + d <= LOOSE * 2 * longer:
                     extend([*chain, (j, e == 1)], gaps + d, longer)
@@ -66,7 +66,7 @@ def closing_chains(page: Page, complete: Set[int]) -> list[Chain]:
     return [chain for _, (_, chain) in tightest[: MOST_CHAINS * len(pieces)]]
 
 
-def _near_ends(loose: list[Piece]) -> dict[tuple[int, int], list[tuple[float, int, int]]]:
+def _near_ends(page: Page, loose: list[Piece]) -> dict[tuple[int, int], list[tuple[float, int, int]]]:
     """For each end (piece, 0 or 1), the ends of other pieces close enough to go on to: distance, piece,
     end."""
     out: dict[tuple[int, int], list[tuple[float, int, int]]] = {}
@@ -85,6 +85,8 @@ def _near_ends(loose: list[Piece]) -> dict[tuple[int, int], list[tuple[float, in
         close = np.flatnonzero((d <= 1.5 * LOOSE * (length[others] + length[i])) & (others // 2 != i // 2))
         for j, gap in zip(others[close].tolist(), d[close].tolist(), strict=True):
             p, q = (loose[i // 2].index, i % 2), (loose[j // 2].index, j % 2)
+            if not page.apart(p[0], q[:1]):
+                continue
             out.setdefault(p, []).append((gap, *q))
             out.setdefault(q, []).append((gap, *p))
     return {end: sorted(found)[:CHOICES] for end, found in out.items()}
@@ -103,6 +105,8 @@ def crosses(page: Page, complete: Set[int] = frozenset()) -> Iterator[tuple[int,
         for q in bars[a + 1 :]:
             if q.box[0] > p.box[2]:
                 break
+            if not page.apart(p.index, (q.index,)):
+                continue
             if not (_is_bar(p) or _is_bar(q)) or max(p.extent, q.extent) > 3 * min(p.extent, q.extent):
                 continue
             if p.box[1] <= q.box[3] and q.box[1] <= p.box[3]:
@@ -144,6 +148,8 @@ def arrow_groups(
             heads = _heads(page, boxes, p, tip_end)
             for size in (1, 2):
                 for group in combinations(heads, size):
+                    if not page.apart(group[0], group[1:]):
+                        continue
                     yield (p.index, *group), tail_end, tip_end
 
 
@@ -164,7 +170,7 @@ def _heads(page: Page, boxes: NDArray[np.float64], shaft: Piece, tip: Point) -> 
     found = []
     for j in np.flatnonzero(near).tolist():
         q = page.pieces[j]
-        if j == shaft.index or q.extent > 2 * shaft.length:
+        if j == shaft.index or not page.apart(j, (shaft.index,)) or q.extent > 2 * shaft.length:
             continue
         d = np.hypot(q.points[:, 0] - x, q.points[:, 1] - y)
         closest = float(d.min())

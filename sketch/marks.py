@@ -154,7 +154,7 @@ def with_strays(page: Page, mark: Fitted, free: list[float]) -> list[Fitted]:
     reach = STRAY * math.dist(mark.figure.min(axis=0), mark.figure.max(axis=0))
     costs: dict[int, float] = {}
     for p in page.within(mark.figure, reach):
-        if p.index in mark.pieces:
+        if p.index in mark.pieces or not page.apart(p.index, mark.pieces):
             continue
         off = off_outline(page.strokes, p.stroke, mark.figure)
         cost = PARAMETER + RETRACE * p.observations + misfit_of(p, off, p.extent / 2)

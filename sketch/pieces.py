@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,12 +76,19 @@ class Page:
         strokes: their measures as arrays, for the fits; a piece's row is its stroke.
         size: diagonal of the ink's bounding box [pixels].
         boxes: of the pieces, (pieces, 4).
+        rivals: of each piece, the other pieces that are the same ink, followed in another way: no two of them are in
+            one reading.  Without any, empty.
     """
 
     pieces: list[Piece]
     strokes: Strokes
     size: float
     boxes: Array
+    rivals: Sequence[Set[int]] = ()
+
+    def apart(self, index: int, others: Iterable[int]) -> bool:
+        """Whether a piece shares no ink with some others."""
+        return not self.rivals or self.rivals[index].isdisjoint(others)
 
     def within(self, outline: Array, reach: float) -> list[Piece]:
         """The pieces that lie in an outline's bounding box, widened by `reach` [pixels]."""

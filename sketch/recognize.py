@@ -154,7 +154,7 @@ def _gone_over(page: Page, found: list[Fitted]) -> list[Fitted]:
     best = min(found, key=lambda f: f.cost)
     costs: dict[int, float] = {}
     for p in page.within(best.outline, 0.3 * best.scale):
-        if p.index in best.pieces:
+        if p.index in best.pieces or not page.apart(p.index, best.pieces):
             continue
         cost = gone_over(page, best, p.index)
         if cost < unread(p):
