@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.graph import RING, End, Graph
 
-__all__ = ["Course", "Links", "follow", "length"]
+__all__ = ["Course", "Links", "follow", "length", "through"]
 
 Points = NDArray[np.float64]
 Links = dict[End, tuple[End, Points]]  # where a course goes on from an end, and the ink in between
@@ -57,6 +57,27 @@ def follow(graph: Graph, links: Links, inner: set[int]) -> list[Course]:
             course.closed = True
         courses.append(course)
     return courses
+
+
+def through(links: Links, end: End) -> Course:
+    """The course through an edge, given one of its ends."""
+    begin = end
+    while begin in links:
+        left = links[begin][0]
+        begin = (left[0], 1 - left[1])
+        if begin == end:
+            break
+    course, at = Course([]), begin
+    while True:
+        course.steps.append(at)
+        leave = (at[0], 1 - at[1])
+        if leave not in links:
+            return course
+        at, via = links[leave]
+        course.via.append(via)
+        if at == begin:
+            course.closed = True
+            return course
 
 
 def length(graph: Graph, course: Course) -> float:

@@ -10,22 +10,28 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import Chains
 
-__all__ = ["RING", "SIGHT", "Edge", "End", "Graph", "bend", "build_graph", "heading"]
+__all__ = ["RING", "SIGHT", "Edge", "End", "Graph", "Ink", "bend", "build_graph", "heading"]
 
 Points = NDArray[np.float64]
 RING = (-2, -2)  # the ends of an edge that closes on itself
 SIGHT = 4.0  # pen widths along a branch that show where it is going
 SMOOTH = 0.04  # of the sight: how far an arc may be off a parabola
 OVERSHOOT = 2.5  # pen widths that a line may go on past its corner
+Ink = dict[int, Points]  # stretches of the skeleton by name, each shape (n, 2) [pixels]
 End = tuple[int, int]  # an edge and which of its ends
 
 
 @dataclass(eq=False)
 class Edge:
-    """points: [pixels] from the first node to the last, shape (n, 2).  ends: nodes, -1 free, -2 a ring."""
+    """points: [pixels] from the first node to the last, shape (n, 2).  ends: nodes, -1 free, -2 a ring.
+
+    ink: the stretches of the skeleton that it is made of, for telling which edges of two graphs of one skeleton are
+    the same ink.
+    """
 
     points: Points
     ends: tuple[int, int]
+    ink: Ink = field(default_factory=dict)
 
     @property
     def length(self) -> float:

@@ -25,6 +25,7 @@ CROSSING = 1.6  # pen widths: nodes nearer than this are one crossing, which thi
 MERGED = 12.0  # pen widths: the longest bridge that is tried as the ink of two lines
 BRIDGE_COST = 0.06  # for each pen width of a bridge that two lines share
 UNEVEN = 0.5  # weight of the difference in bend between two branches
+ROUND_BEND = 1.0  # [rad] beyond which bends are not compared
 LONELY = 1.0  # the cost of an end at a junction, as the square of a turn in radians
 KNOT = 8  # more branches than this are paired greedily
 
@@ -152,7 +153,8 @@ def turn_cost(a: Branch, b: Branch) -> float:
     """
     turn = _angle(-a.outward, b.outward)
     gap = b.start - a.start
-    uneven = UNEVEN * (a.bend + b.bend) ** 2  # seen from a junction, both halves of an arc bend opposite ways
+    # seen from a junction, both halves of an arc bend opposite ways; what bends a lot bends as it likes
+    uneven = UNEVEN * min(abs(a.bend + b.bend), ROUND_BEND) ** 2
     if np.hypot(*gap) < 1e-9:
         return turn * turn + uneven
     detour = _angle(-a.outward, gap) + _angle(gap, b.outward)

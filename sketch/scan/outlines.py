@@ -10,6 +10,7 @@ by going through the junctions, one at a time, until none can be paired better.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -17,7 +18,7 @@ import numpy as np
 from sketch.scan.graph import End, Graph
 from sketch.scan.junctions import LONELY, Junction, Pairs, turn_cost
 
-__all__ = ["close_outlines"]
+__all__ = ["Choice", "close_outlines"]
 
 CLOSED = 2.5  # [rad²] what a closed outline is worth: the corner of a square that closes it
 COINCIDENCE = 0.9  # [rad²] for every further line that ends at the same place
@@ -27,8 +28,20 @@ MOST_BRANCHES = 6  # of a junction that is looked at: there are 76 ways to pair 
 SWEEPS = 3
 
 
-def close_outlines(graph: Graph, junctions: list[Junction], pen: float) -> None:
-    """Pair the branches of all junctions, in place, as well as can be. pen: its width [pixels]."""
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """Another way to pair a junction's branches, and by how much it is worse [rad²]."""
+
+    junction: Junction
+    pairs: Pairs
+    extra: float
+
+
+def close_outlines(graph: Graph, junctions: list[Junction], pen: float) -> list[Choice]:
+    """Pair the branches of all junctions, in place, as well as can be; returns what was not chosen.
+
+    pen: its width [pixels].
+    """
     partner: dict[End, End] = {}
     where: dict[End, int] = {}
     for k, junction in enumerate(junctions):
@@ -48,22 +61,30 @@ def close_outlines(graph: Graph, junctions: list[Junction], pen: float) -> None:
                 count += _is_outline(graph, trail, around, where, lengths, shortest)
         return count
 
+    choices: dict[int, list[Choice]] = {}
     for _ in range(SWEEPS):
         changed = False
-        for junction in junctions:
-            if not 3 <= len(junction.branches) <= MOST_BRANCHES:
+        for k, junction in enumerate(junctions):
+            if not 2 <= len(junction.branches) <= MOST_BRANCHES:
                 continue
             options = _options(junction)
             values = []
             for cost, pairs in options:
                 _link(partner, junction, pairs)
                 values.append(cost - CLOSED * closed(junction))
-            chosen = options[int(np.argmin(values))][1]
+            best = int(np.argmin(values))
+            chosen = options[best][1]
+            choices[k] = [
+                Choice(junction, pairs, value - values[best])
+                for n, ((_, pairs), value) in enumerate(zip(options, values, strict=True))
+                if n != best
+            ]
             changed |= set(chosen) != set(junction.pairs)
             junction.pairs = chosen
             _link(partner, junction, chosen)
         if not changed:
             break
+    return [choice for found in choices.values() for choice in found]
 
 
 def _link(partner: dict[End, End], junction: Junction, pairs: Pairs) -> None:

@@ -7,13 +7,17 @@ into it on one side and comes out on another is then a crossing, as wide as the 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import combinations, count
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import Edge, Graph
+from sketch.scan.graph import Edge, Graph, Ink
 from sketch.scan.page import holes
+from sketch.scan.ways import Way
 
 __all__ = ["find_rings", "take_rings"]
 
@@ -23,22 +27,25 @@ SMALLEST, LARGEST = 1.4, 4.5  # pen widths: the radius of the ring that the pen'
 RAYS = 48  # directions in which the belt is looked for
 DRAWN = 0.9  # the share of the rays that must meet the belt
 OUT_OF_ROUND = 0.09  # deviation from a circle, a share of its radius: a square has 0.11, a triangle 0.24
-OPEN = 0.5  # the share of the rays beyond the belt that must meet paper: a ring stands out from a scribble
+CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to be chance
+OPEN = 0.4  # the share of the rays beyond the belt that must meet paper: a ring stands out from a scribble
+CLEAR = 0.8  # and with that within the belt
+LEAST_ROUND = -0.4
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
 
-def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[Points]:
+def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[Way]:
     """The closed ways of the pen around small round holes [pixels], each shape (RAYS + 1, 2), best first.
 
-    mask: ink 1, paper 0, shape (h, w).  distance: each ink pixel's distance to the paper.
+    mask: ink 1, paper 0, shape (h, w).  distance: each ink pixel's distance to the paper.  Their ink is not known yet.
     """
     found = sorted(
         (ring for seed in _seeds(mask, distance, pen) for ring in _belt(mask, seed, pen)), key=lambda r: -r[0]
     )
-    rings: list[Points] = []
-    for _, middle, radius, points in found:
-        if all(np.hypot(*(r.mean(axis=0) - middle)) > radius for r in rings):
-            rings.append(points)
+    rings: list[Way] = []
+    for roundness, middle, radius, points in found:
+        if all(np.hypot(*(r.points[:-1].mean(axis=0) - middle)) > radius for r in rings):
+            rings.append(Way(points, {}, -CHANCE * roundness))
     return rings
 
 
@@ -49,6 +56,11 @@ def _seeds(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[tuple
     largest = np.pi * (LARGEST * pen) ** 2
     small = [(way, area) for way, area in holes(mask) if area < largest]
     seeds = [_middle_and_radius(way, np.sqrt(max(area, 1) / np.pi) + pen / 2) for way, area in small]
+    # a line across a ring makes two holes of one
+    for (one, _), (other, _) in combinations(small, 2):
+        if np.abs(one[0, 0] - other[0, 0]).max() < 2 * LARGEST * pen:
+            (x, y), radius = cv2.minEnclosingCircle(np.concatenate([one, other]))
+            seeds.append((x, y, radius + pen / 2 - 1))
     # ink much wider than a line is a hole that closed, wholly or in part
     inside = np.zeros_like(mask)
     cv2.drawContours(inside, [way for way, _ in small], -1, 1, cv2.FILLED)
@@ -75,7 +87,7 @@ def _grown(region: NDArray[Any], by: float) -> NDArray[Any]:
 def _belt(
     mask: NDArray[Any], seed: tuple[float, float, float], pen: float
 ) -> list[tuple[float, Points, float, Points]]:
-    """The belt of ink around a seed, as its score, middle, radius and points; empty where there is none.
+    """The belt of ink around a seed, as its roundness, middle, radius and points; empty where there is none.
 
     Along each ray the belt is the run of ink whose middle is nearest to the circle so far, which is then
     fitted to those middles (Kåsa 1976), three times.
@@ -99,12 +111,12 @@ def _belt(
         1 - _at(mask, middle + rays * np.maximum(np.where(met, along, radius) - 0.8 * pen, 0)[:, None]).mean()
     )
     uneven = float(np.sqrt(np.mean((along - radius) ** 2))) / radius
-    if share < DRAWN or beyond < OPEN or within + beyond < 1 or uneven > OUT_OF_ROUND:
+    roundness = 1 - uneven / OUT_OF_ROUND
+    if share < DRAWN or beyond < OPEN or within + beyond < CLEAR or roundness < LEAST_ROUND:
         return []
     along = (np.roll(along, 1) + 2 * along + np.roll(along, -1)) / 4
     points = middle + rays * along[:, None]
-    score = share + beyond + within - 5 * uneven
-    return [(score, middle, radius, np.concatenate([points, points[:1]]))]
+    return [(roundness, middle, radius, np.concatenate([points, points[:1]]))]
 
 
 def _at(mask: NDArray[Any], points: Points) -> NDArray[Any]:
@@ -142,35 +154,88 @@ def _circle(points: Points) -> tuple[Points, float]:
     return origin + np.array([a, b]) / 2, float(np.sqrt(max(c + (a * a + b * b) / 4, 0.0)))
 
 
-def take_rings(graph: Graph, rings: list[Points], pen: float) -> list[Points]:
-    """Take the rings that other ink touches out of the graph, in place; returns those taken.
+def take_rings(graph: Graph, rings: list[Way], pen: float) -> tuple[Graph | None, list[Way]]:
+    """Take the rings that other ink touches out of the graph, in place.
 
-    Each leaves one node at its centre, at which the edges that ran into its belt end.
+    Each leaves one node at its centre, at which the edges that ran into its belt end.  Returns the graph of the
+    tangles as it was with the rings in it, or None without any, and the rings taken.
     """
+    whole = list(graph.edges)
+    names = count(1 + max((name for edge in whole for name in edge.ink), default=-1))
+    for edge in whole:
+        if not edge.ink:
+            edge.ink = {next(names): edge.points}
+    parts = {k: edge.ink for k, edge in enumerate(whole)}
+    nodes, radius = graph.nodes, graph.radius
     taken = []
+    touched: set[int] = set()
     for ring in rings:
-        middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
-        reach = float(np.hypot(*(ring - middle).T).max()) + BELT * pen
+        middle = (ring.points.min(axis=0) + ring.points.max(axis=0)) / 2
+        reach = float(np.hypot(*(ring.points - middle).T).max()) + BELT * pen
         near = np.hypot(*(graph.nodes - middle).T) < reach if len(graph.nodes) else np.zeros(0, bool)
         if near.any():
-            taken.append(ring)
-            _take(graph, middle, reach, set(np.flatnonzero(near).tolist()), pen)
-    return taken
+            inside = set(np.flatnonzero(near).tolist())
+            touched |= inside
+            taken.append(replace(ring, ink=_take(graph, middle, reach, inside, pen, names, parts)))
+    if not taken:
+        return None, []
+    for k, edge in enumerate(whole):
+        edge.ink = parts[k]
+    near = _reached(whole, touched)
+    return Graph(nodes, radius, [edge for edge, there in zip(whole, near, strict=True) if there]), taken
 
 
-def _take(graph: Graph, middle: Points, reach: float, inside: set[int], pen: float) -> None:
+def _reached(edges: list[Edge], nodes: set[int]) -> list[bool]:
+    """Which edges hang together with some nodes."""
+    reached = set(nodes)
+    while True:
+        more = {end for edge in edges if not reached.isdisjoint(edge.ends) for end in edge.ends if end >= 0}
+        if more <= reached:
+            return [not reached.isdisjoint(edge.ends) for edge in edges]
+        reached |= more
+
+
+def _take(
+    graph: Graph,
+    middle: Points,
+    reach: float,
+    inside: set[int],
+    pen: float,
+    names: Iterator[int],
+    parts: dict[int, Ink],
+) -> Ink:
+    """Cut a ring out of the graph, in place; returns its ink.
+
+    names: for stretches of ink that are new by being cut.  parts: of each whole edge, the stretches.
+    """
     node = len(graph.nodes)
     graph.nodes = np.concatenate([graph.nodes, middle[None]])
     graph.radius = np.append(graph.radius, reach)
     edges = []
+    ink: Ink = {}
     for edge in graph.edges:
         head, tail = (node if end in inside else end for end in edge.ends)
         outside = np.hypot(*(edge.points - middle).T) >= reach
+        if outside.all() and (head, tail) == edge.ends:
+            edges.append(edge)
+            continue
+        (name,) = edge.ink
+        whole = next(k for k, found in parts.items() if name in found)
+        parts[whole] = stretches = {n: size for n, size in parts[whole].items() if n != name}
         steps = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(int), [0]])))
+        if not outside.all():
+            name = next(names)
+            stretches[name] = ink[name] = edge.points[~outside]
         for a, b in steps.reshape(-1, 2):
             ends = (head if a == 0 else node, tail if b == len(outside) else node)
-            piece = Edge(edge.points[a:b], ends) if b - a < len(outside) else Edge(edge.points, ends)
+            piece = Edge(edge.points[a:b], ends)
+            name = next(names)
+            stretches[name] = piece.points
             # a stub that ends freely beside the belt is the belt's own
             if b - a > 1 and (node not in ends or min(ends) >= 0 or piece.length > pen):
+                piece.ink = {name: piece.points}
                 edges.append(piece)
+            else:
+                ink[name] = piece.points
     graph.edges = edges
+    return ink

@@ -14,7 +14,8 @@ from sketch.scan.graph import build_graph
 from sketch.scan.page import Page, drop_specks, fill_pinholes, hollow_fills, ink_mask, read_page
 from sketch.scan.ridge import centre_on_ink
 from sketch.scan.rings import find_rings, take_rings
-from sketch.scan.strokes import trace_strokes
+from sketch.scan.settle import settle
+from sketch.scan.ways import Way, Ways
 
 __all__ = ["Traced", "trace_picture"]
 
@@ -26,6 +27,7 @@ FINEST = 0.5  # picture pixels to a pixel: the thinnest pens are thinned at twic
 NARROWEST_PEN = 3.0  # [pixels]: a thinner pen is thinned at twice the resolution
 WIDEST_PEN = 6.4  # [pixels]: a wider pen is thinned at half the resolution
 SMOOTHING = 0.8  # [points]: standard deviation of the smoothing along a stroke
+CERTAIN = -5.0  # [rad²]: a ring with less strain is not looked at as anything else
 NEARBY = 4  # [pixels] within which ink is compared with the darkest
 
 
@@ -109,12 +111,34 @@ def _strokes(seen: Traced) -> list[Points]:
     seen.skeleton, count = thin(mask)
     distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     graph = build_graph(trace(seen.skeleton, count), distance, pen)
-    rings = take_rings(graph, find_rings(mask, distance, pen), pen)
     centre_on_ink(graph, page.darkness, pen)
     sharpen_corners(graph, distance, pen)
-    strokes = [begin_at_corner(s, pen) for s in trace_strokes(graph, pen)] + rings
-    strokes = [smooth(s, SMOOTHING) for s in strokes]
-    return [(s + 0.5) * seen.scale - 0.5 for s in strokes if len(s) > 1]
+    found = find_rings(mask, distance, pen)
+    _, rings = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen)
+    whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen)
+    rings += doubtful
+    ways = Ways(graph, pen)
+    likeliest = [_drawn(way, seen) for way in ways.likeliest()] + [_drawn(ring, seen) for ring in rings]
+    others = [_drawn(way, seen) for way in ways.others()]
+    if whole is not None:
+        tangled = Ways(whole, pen)
+        known = {frozenset(way.ink) for way in likeliest + others}
+        more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
+        others += [_drawn(way, seen) for way in more]
+    if others:
+        height, width = mask.shape
+        chosen = settle(likeliest, others, pen * seen.scale, width * seen.scale, height * seen.scale)
+        used = frozenset(name for way in chosen for name in way.ink)
+        left = [ring for ring in rings if used.isdisjoint(ring.ink)]
+        likeliest = chosen + [_drawn(way, seen) for way in ways.likeliest(without=used) + left]
+    return [way.points for way in likeliest if len(way.points) > 1]
+
+
+def _drawn(way: Way, seen: Traced) -> Way:
+    """A way as it is handed on: begun at a corner, smooth, in the picture's pixels."""
+    points = smooth(begin_at_corner(way.points, seen.pen), SMOOTHING)
+    ink = {name: (stretch + 0.5) * seen.scale - 0.5 for name, stretch in way.ink.items()}
+    return Way((points + 0.5) * seen.scale - 0.5, ink, way.strain)
 
 
 def smooth(points: Points, sigma: float) -> Points:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sketch.scan.binding import pieces, thin, trace
 from sketch.scan.corners import sharpen_corners
 from sketch.scan.graph import build_graph
-from sketch.scan.strokes import trace_strokes
+from sketch.scan.ways import trace_strokes
 
 PEN = 5
 

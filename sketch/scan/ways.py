@@ -1,0 +1,117 @@
+"""Ways: which strokes a graph may be made of.
+
+At most junctions one pairing of the branches is much smoother than all others.  Where none is, only what the
+strokes would make can tell; so the strokes of the next best pairings are given too, to be chosen among
+(`sketch.scan.settle`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.scan.courses import Course, Links, follow, through
+from sketch.scan.graph import Graph, Ink
+from sketch.scan.junctions import find_junctions
+from sketch.scan.outlines import Choice, close_outlines
+from sketch.scan.strokes import Layout
+
+__all__ = ["Way", "Ways", "trace_strokes"]
+
+Points = NDArray[np.float64]
+
+DOUBT = 3.0  # [rad²] that pairings may be worse in all than the best ones, and still be looked at
+TOGETHER = 2  # junctions that are paired otherwise at once
+MOST = 30  # combinations of pairings that are looked at
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A stroke that may have been drawn.
+
+    points: [pixels], shape (n, 2).  ink: the stretches of the skeleton that it accounts for, and where each is; what
+    it only borrows from other strokes is not among them.  strain: the cost of its turns and ends at junctions
+    [rad²].
+    """
+
+    points: Points
+    ink: Ink
+    strain: float = 0.0
+
+
+class Ways:
+    """The strokes that a graph may be made of. pen: the width of the pen [pixels]."""
+
+    def __init__(self, graph: Graph, pen: float) -> None:
+        junctions = find_junctions(graph, pen)
+        self._graph = graph
+        self._inner = {e for junction in junctions for e in junction.bridges}
+        self._choices = close_outlines(graph, junctions, pen)
+        self._layout = Layout(graph, junctions, pen)
+        self._links: Links = {}
+        for junction in junctions:
+            self._links.update(self._layout.links(junction, junction.pairs))
+
+    def likeliest(self, without: frozenset[int] = frozenset()) -> list[Way]:
+        """The strokes of the best pairings, along the edges that have other ink than `without`."""
+        gone = {e for e, edge in enumerate(self._graph.edges) if edge.ink and edge.ink.keys() <= without}
+        links = {a: (b, way) for a, (b, way) in self._links.items() if a[0] not in gone and b[0] not in gone}
+        courses = follow(self._graph, links, self._inner | gone)
+        for course in courses:
+            self._layout.borrow(course, courses)
+        return [self._way(course, links) for course in courses if not self._layout.is_crumb(course)]
+
+    def others(self) -> list[Way]:
+        """Strokes of the next best pairings, the likelier first."""
+        seen, out = set(), []
+        for course in follow(self._graph, self._links, self._inner):
+            seen.add(_signature(course))
+        for choices in _combined(self._choices):
+            links = dict(self._links)
+            for choice in choices:
+                for branch in choice.junction.branches:
+                    links.pop(branch.end, None)
+                links.update(self._layout.links(choice.junction, choice.pairs))
+            for choice in choices:
+                for branch in choice.junction.branches:
+                    course = through(links, branch.end)
+                    signature = _signature(course)
+                    if signature in seen or self._layout.is_crumb(course):
+                        continue
+                    seen.add(signature)
+                    out.append(self._way(course, links))
+        return out
+
+    def _way(self, course: Course, links: Links) -> Way:
+        ink: Ink = {}
+        for e, _ in course.steps:
+            ink.update(self._graph.edges[e].ink)
+        return Way(self._layout.points(course, links), ink, self._layout.strain(course))
+
+
+def _signature(course: Course) -> tuple[frozenset[int], frozenset[frozenset[tuple[int, int]]]]:
+    """What tells a course from others, whichever way and from wherever it is followed."""
+    edges = [e for e, _ in course.steps]
+    leaves = [(e, 1 - side) for e, side in course.steps]
+    enters = course.steps[1:] + (course.steps[:1] if course.closed else [])
+    return frozenset(edges), frozenset(frozenset(pair) for pair in zip(leaves, enters, strict=False))
+
+
+def _combined(choices: list[Choice]) -> list[tuple[Choice, ...]]:
+    """Sets of choices at different junctions, the likeliest first."""
+    likely = sorted((c for c in choices if c.extra < DOUBT), key=lambda c: c.extra)
+    sets = [
+        some
+        for size in range(1, TOGETHER + 1)
+        for some in combinations(likely, size)
+        if sum(c.extra for c in some) < DOUBT and len({id(c.junction) for c in some}) == size
+    ]
+    return sorted(sets, key=lambda some: sum(c.extra for c in some))[:MOST]
+
+
+def trace_strokes(graph: Graph, pen: float) -> list[Points]:
+    """The likeliest strokes of a graph [pixels], each shape (n, 2). pen: the width of the pen [pixels]."""
+    return [way.points for way in Ways(graph, pen).likeliest()]
