@@ -14,19 +14,25 @@ __all__ = ["Page", "drop_specks", "fill_pinholes", "holes", "hollow_fills", "ink
 
 Image = NDArray[Any]  # uint8
 
-REDUCED = 4  # light is looked at with this many pixels a side made one
+LIGHT_PIXELS = 120_000  # light is looked at on a picture reduced to this many
+COARSER = 5  # of these a side make one where light is smoothed
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line
 FINGER_MARK = 0.08  # likewise, the largest shadow or nail that is seen of a finger on the sheet
 FINGER = 0.015  # likewise, for telling the paper from what lies on it
 TABLE = 0.5  # what is not as bright as this share of the paper is not paper
+TINGE = 0.75  # likewise, of the paper's whiteness: what is more coloured is not paper in a shadow
 DARK_BOARD = 110  # of 255
-MARGIN = REDUCED + 2  # [pixels] along the edges of the picture that are not looked at
+MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
 SPECK = 3.5  # pen widths
 PINHOLE = 1.0  # squares of the pen width: a ring around a smaller hole is a blot
 FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
+CREST = 1.2  # of a line's darkness: what is next to it may be as dark
+LEAST_LINK = 3.0  # [pixels]: what is shorter and leads nowhere is a bump of an edge
+BESIDE = 0.6  # of a line's darkness: beside it the paper is brighter
+SMUDGE = 0.5  # likewise, for small pieces: a dirty finger leaves those
 NOTABLE = 0.03  # of the picture's size: pieces smaller than this do not say how dark the ink is
 
 
@@ -55,13 +61,15 @@ def read_page(picture: Image) -> Page:
 
     grey = _darkest_channel(picture)
     height, width = grey.shape
-    size = (max(width // REDUCED, 1), max(height // REDUCED, 1))
-    small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
-    if _is_blackboard(small):
+    reduced = max(round((width * height / LIGHT_PIXELS) ** 0.5), 1)
+    size = (max(width // reduced, 1), max(height // reduced, 1))
+    colours = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+    if _is_blackboard(_darkest_channel(colours)):
         grey = _darkest_channel(255 - picture)
-        small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
+        colours = 255 - colours
+    small = _darkest_channel(colours)
     light, edge = _closed(small, WIDEST_LINE), None
-    paper, around = _paper(small)
+    paper, around = _paper(colours)
     if paper is not None:
         # on the sheet, what is dark all over is filled: it has the light of the paper around it
         light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
@@ -75,7 +83,8 @@ def read_page(picture: Image) -> Page:
         paper = cv2.resize(paper, (width, height), interpolation=cv2.INTER_NEAREST)
         darkness = cv2.min(darkness, paper)
     # a sheet may end so near the picture's edge that no table is seen beyond
-    for strip in (darkness[:MARGIN], darkness[-MARGIN:], darkness[:, :MARGIN], darkness[:, -MARGIN:]):
+    rim = MARGIN * reduced
+    for strip in (darkness[:rim], darkness[-rim:], darkness[:, :rim], darkness[:, -rim:]):
         strip[...] = 0
     return Page(darkness, _noise(darkness, paper), edge)
 
@@ -113,31 +122,43 @@ def _closed(small: Image, width: float) -> Image:
     return np.asarray(closed[reach:-reach, reach:-reach])
 
 
-def _paper(small: Image) -> tuple[Image | None, NDArray[Any]]:
+def _paper(colours: Image) -> tuple[Image | None, NDArray[Any]]:
     """255 on the sheet and 0 off it, or None where the sheet fills the picture; and the light on the sheet.
 
     Light changes across a sheet, but not at once: a sheet ends where brightness falls below TABLE within
     a few pixels.  Of the regions that such edges part, the one with the most light is the sheet; the light on
-    it, continued beyond, then tells softer edges too.
+    it, continued beyond, then tells softer edges too, and its colour tells skin and wood from shadows.
     """
     import cv2
 
-    bright = _closed(small, FINGER)
+    bright = _closed(_darkest_channel(colours), FINGER)
     square = np.ones((5, 5), np.uint8)
     inner = (cv2.erode(bright, square) >= TABLE * cv2.dilate(bright, square)).astype(np.uint8)
     if inner.all():
         return None, bright
     weight = _brightest_region(inner, bright).astype(np.float32)
-    spread = 0.12 * (small.shape[0] * small.shape[1]) ** 0.5
-    around = cv2.GaussianBlur(weight * bright, (0, 0), spread) / (
-        cv2.GaussianBlur(weight, (0, 0), spread) + 1e-3
-    )
-    sheet = _brightest_region(inner & (bright >= TABLE * around), bright)
+    around = _continued(bright, weight)
+    pale = 255 - _darkest_channel(255 - colours)
+    whiteness = bright / np.maximum(_closed(pale, FINGER), 1).astype(np.float32)
+    white = whiteness >= TINGE * _continued(whiteness, weight)
+    sheet = _brightest_region(inner & white & (bright >= TABLE * around), bright)
     # what the sheet surrounds lies on it: a filled shape, a coin, a blot
     rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)
     _, labels = cv2.connectedComponents(rest, connectivity=4)
     off = (labels == labels[0, 0]).astype(np.uint8)
     return np.asarray(255 * (1 - cv2.dilate(off, square)[1:-1, 1:-1]), np.uint8), around
+
+
+def _continued(values: NDArray[Any], weight: NDArray[np.float32]) -> NDArray[Any]:
+    """The values where there is weight, smoothed and continued beyond."""
+    import cv2
+
+    height, width = values.shape
+    size = (max(width // COARSER, 1), max(height // COARSER, 1))
+    total, known = (cv2.resize(v, size, interpolation=cv2.INTER_AREA) for v in (weight * values, weight))
+    spread = 0.12 * (size[0] * size[1]) ** 0.5
+    smooth = cv2.GaussianBlur(total, (0, 0), spread) / (cv2.GaussianBlur(known, (0, 0), spread) + 1e-3)
+    return np.asarray(cv2.resize(smooth, (width, height), interpolation=cv2.INTER_LINEAR))
 
 
 def _brightest_region(mask: Image, bright: Image) -> NDArray[np.bool_]:
@@ -181,10 +202,49 @@ def ink_mask(page: Page, reach: int) -> Image:
         return np.zeros_like(mask)
     full = found.strength[notable].max()
     mask |= darkness > max(floor, 0.75 * full)
+    _link_thin_lines(mask, darkness, max(floor, FAINT * full), reach)
     found = _measure(mask, page)
     held = found.at_edge & (found.span < FINGER_MARK * size)
-    keep = (found.strength >= FAINT * full) & (found.span >= 2 * reach) & ~held
+    faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
+    keep = (found.strength >= faintest) & (found.span >= 2 * reach) & ~held
     return found.without(mask, ~keep)
+
+
+def _link_thin_lines(mask: Image, darkness: Image, faintest: float, reach: int) -> None:
+    """Add to the ink, in place, what is darker than `faintest` and a line of its own.
+
+    Beside darker ink a thin line is less than half as dark as the darkest around, as the blurred edge of that
+    ink is; but from a line darkness falls to both sides, and along an edge to one.
+    """
+    width = mask.shape[1]
+    inside = slice(reach, -reach)
+    line = np.zeros_like(mask)
+    line[inside, inside] = (darkness > faintest)[inside, inside] & (mask == 0)[inside, inside]
+    at = np.flatnonzero(line)
+    flat = darkness.ravel()
+    line.ravel()[at] = 0
+    for across in (1, width, width + 1, width - 1):
+        crest = at[np.maximum(flat[at + across], flat[at - across]) < CREST * flat[at]]
+        steps = range(2, (reach if across in (1, width) else reach - 1) + 1)
+        sides = [np.minimum.reduce([flat[crest + way * k * across] for k in steps]) for way in (1, -1)]
+        line.ravel()[crest[np.maximum(*sides) < BESIDE * flat[crest]]] = 1
+    found = _measure(line, None)
+    mask |= found.without(line, (found.span < LEAST_LINK) & (_touched(found, mask) < 2))
+
+
+def _touched(found: _Pieces, mask: Image) -> NDArray[np.int64]:
+    """How many stretches of a mask each of the pieces touches that lie beside it."""
+    width = mask.shape[1]
+    around = np.array([1, width + 1, width, width - 1, -1, -width - 1, -width, -width + 1])
+    piece = np.zeros(mask.size, np.int32)
+    piece[found.pixels] = np.repeat(np.arange(1, len(found.area) + 1), found.area)
+    beside = np.zeros_like(mask)
+    beside.ravel()[(found.pixels[:, None] + around).ravel()] = 1
+    stretches = _measure(beside & mask, None)
+    ours = piece[stretches.pixels[:, None] + around].max(axis=1)
+    stretch = np.repeat(np.arange(len(stretches.area)), stretches.area)
+    pairs = np.unique(np.stack([ours, stretch]), axis=1)
+    return np.bincount(pairs[0], minlength=len(found.area) + 1)[1:]
 
 
 def drop_specks(mask: Image, pen: float) -> int:
