@@ -23,6 +23,7 @@ ONE_ARROW = (
 )
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
+NEAR_BY = 0.25  # of a bar's extent: as near as the strokes of a letter are
 LETTER = 0.15  # of the page: larger bars are no letter
 TWIG = 0.04  # of the page: an open line that is shorter is a slip too
 DOT = 0.012  # of the page: nobody draws a smaller body
@@ -83,7 +84,7 @@ def _letters(candidates: list[Fitted], gains: list[float], chosen: list[int], la
     bars.sort(key=lambda t: t[2][:, 0].min())
     found: set[int] = set()
     for a, (k, c, dense) in enumerate(bars):
-        reach = 0.15 * _extent(c.outline)
+        reach = NEAR_BY * _extent(c.outline)
         for j, other, points in bars[a + 1 :]:
             if points[:, 0].min() > dense[:, 0].max() + reach:
                 break

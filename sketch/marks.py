@@ -16,8 +16,8 @@ from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
 __all__ = ["read_arrow", "read_bar", "read_cross", "with_strays"]
 
 MOST_BENDS = 5
-BEND = 5.0  # nats for each corner of a bar
-SHARP = 15.0  # nats that a right angle is rarer in a bar, one that folds it back twice that
+BEND = 3.0  # nats for each corner of a bar
+SHARP = 12.0  # nats that a right angle is rarer in a bar, one that folds it back twice that
 HEAD = 2.0  # nats an observation to say ink freely, where it lies within an arrow's head
 SHAFT = 0.55  # of the shaft: what the distance of an arrow's ink goes with,
 GAPS = 0.5  # and how far any of the arrow is from ink: a barb that nobody drew is no slip of the hand
@@ -27,7 +27,7 @@ OFTEN = (
     2.0,
 )  # times that a shaft and the barbs of an arrow are drawn: the pen comes back along a barb
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
-RARE = 15.0  # nats that an open line is rarer than an outline
+RARE = 25.0  # nats that an open line is rarer than an outline
 RARE_ARROW = 2.0  # likewise for an arrow: there is one on a page, or none
 
 Vertex = list[float]

@@ -1,4 +1,4 @@
-"""Readings of closed outlines: circle, ellipse, rectangle, polygon; and ink that goes over one once more."""
+"""Readings of closed outlines: circle, ellipse, rectangle, polygon, any course; and ink that goes over one once more."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.kernel import ClosedFit, fit_closed, off_outline
+from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline
 from sketch.pieces import Page
 from sketch.scoring import PARAMETER, Fitted, misfit, unread
 
@@ -25,6 +25,9 @@ USUAL = {3: 2.0, 4: 4.0}  # nats that triangles and quadrilaterals are commoner 
 BOX = 17.0  # nats to say a rectangle: five parameters, and that it is the commonest thing drawn
 UNROUND = 0.085  # usual log of a drawn circle's length over its width: nobody's circles are round
 ELLIPSE = 11.0  # nats that an ellipse takes beyond a circle: two parameters, and that it is rarer
+FREEFORM = 32.0  # nats that an outline of any course, a hill or a cloud, is rarer than a polygon,
+ARC = 9.0  # and nats to say each of the arcs that it goes in: a bow beside the corner
+COURSE = 32  # corners that it is drawn with
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.c
 GAP = 4.0  # nats for each observation that an outline lacks
 CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
@@ -52,6 +55,11 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
     if math.isfinite(fit.cost[sides]):
         cost = fit.cost[sides] + said[sides] + gaps
         out.append(Fitted("polygon", names, cost, fit.vertices(sides), scale, rough=fit.cost[sides]))
+    bent = min(misfit(fit.residual[k], count) + ARC * k for k in range(3, MOST_SIDES + 1))
+    if math.isfinite(bent):
+        course = _course(parts)
+        if is_simple(course):
+            out.append(Fitted("free", names, FREEFORM + bent + gaps, course, scale))
     box = _rectangle(fit) if math.isfinite(fit.cost[4]) else None
     if box is not None:
         corners, extra = box
@@ -59,6 +67,19 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
         cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + BOX + gaps
         out.append(Fitted("rectangle", names, cost, corners, scale))
     return [replace(f, gap=fit.gap / fit.ink) for f in out]
+
+
+def _course(parts: list[Array]) -> Array:
+    """Ink as a closed outline of COURSE corners in equal steps, without what runs beyond its closing [pixels]."""
+    line = np.concatenate(parts)
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    t = np.linspace(0, along[-1], 4 * COURSE)
+    dense = np.stack([np.interp(t, along, line[:, k]) for k in (0, 1)], axis=1)
+    few = COURSE // 2
+    apart = np.hypot(*(dense[:few, None] - dense[None, -few:]).transpose(2, 0, 1))
+    first, last = np.unravel_index(int(apart.argmin()), apart.shape)
+    ring = dense[first : len(dense) - few + last + 1]
+    return np.ascontiguousarray(ring[np.linspace(0, len(ring), COURSE, endpoint=False).astype(int)])
 
 
 def gone_over(page: Page, fitted: Fitted, index: int) -> float:

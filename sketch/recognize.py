@@ -33,7 +33,7 @@ __all__ = ["Reading", "Recognition", "recognize"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
 SAME_PLACE = 0.2  # of a body's size: outlines nowhere further apart are one body, gone over
-KINDS = {"ellipse": "polygon", "cross": "anchor", "arrow": "gravity"}
+KINDS = {"ellipse": "polygon", "free": "polygon", "cross": "anchor", "arrow": "gravity"}
 
 
 FORCED = 1e6  # nats that a reading gains by having been said by the caller

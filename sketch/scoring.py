@@ -33,7 +33,7 @@ class Fitted:
     """A primitive fitted to some ink.
 
     Attributes:
-        kind: "circle", "ellipse", "rectangle", "polygon", "cross", "arrow" or "bar".
+        kind: "circle", "ellipse", "rectangle", "polygon", "free" (an outline of any course), "cross", "arrow" or "bar".
         pieces: indices of the pieces that it explains, in order.
         cost: description length [nats].
         outline: [pixels], as in `sketch.reading.Reading`.
