@@ -1,4 +1,4 @@
-"""Readings of closed outlines: circle, ellipse, rectangle, polygon, any course; and ink that goes over one once more."""
+"""Readings of closed outlines: round, rectangle, polygon, any course; and ink that goes over one once more."""
 
 from __future__ import annotations
 
