@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#define FIRST_HORIZON 4.0   /* how far ahead touches are looked for at first [s]; doubled when it is reached */
 #define BUCKET_LIMIT 1500.0  /* events of one body that may come in a burst */
 #define BUCKET_LEAK 200.0   /* and a second in the long run */
 #define MOST_REPEATS 30     /* events of one body at one moment */
@@ -11,7 +12,7 @@
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
 #define PAIRS_OF_FEW 1e6 /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
-int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, double end) {
+int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance) {
     size_t n = (size_t)world->body_count;
     /* A gap of a twentieth of the tolerance moves nothing farther than that, and is small beside every shape; rounding
      * sets the least. */
@@ -19,7 +20,8 @@ int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance, d
     Slack slack = {.gap = fmax(gap, 1e-10 * world->size), .root = 1e-14 * world->size};
     slack.speed = slack.gap;
     slack.deep = fmax(4 * slack.gap, 0.05 * world->thinnest);
-    *e = (Exact){.world = world, .recorder = recorder, .slack = slack, .tolerance = tolerance, .end = end};
+    *e =
+        (Exact){.world = world, .recorder = recorder, .slack = slack, .tolerance = tolerance, .horizon = FIRST_HORIZON};
     e->track = calloc(n, sizeof *e->track);
     e->island = calloc(n, sizeof *e->island);
     e->motion = malloc(n * sizeof *e->motion);
@@ -89,7 +91,7 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     Track *ta = &e->track[a], *tb = &e->track[b];
     if (ta->motion.degree == 0 && tb->motion.degree == 0) return;
     if (b == 0 && e->world->body[0].shape_count == 0) return;
-    double to = fmin(e->end, fmin(ta->motion.end, tb->motion.end));
+    double to = fmin(e->horizon, fmin(ta->motion.end, tb->motion.end));
     if (a != 0) to = fmin(to, fmax(ta->touch_time, b != 0 ? tb->touch_time : 0)); /* later ones are asked for again */
     if (to <= from) return;
     if (a != 0 && b != 0) { /* most pairs are too far apart to need a closer look */
@@ -124,6 +126,16 @@ static void find_touches(Exact *e, double from) {
     }
     for (int32_t i = 1; i < n; i++) e->changed[i] = false;
     e->world->profile.search_time += seconds_now() - start;
+}
+
+/* Touches are looked for up to a horizon that does not hang on how long the run is to be: a longer one begins as a shorter
+ * one does. */
+static void look_farther(Exact *e) {
+    double from = e->horizon;
+    e->horizon *= 2;
+    for (int32_t i = 1; i < e->world->body_count; i++)
+        e->changed[i] = is_tracked(e, i) && e->track[i].motion.degree > 0;
+    find_touches(e, from);
 }
 
 /* ---------------------------------------------------------------- islands */
@@ -181,9 +193,7 @@ int island_advance(Exact *e, int32_t index, double from) {
     e->steps = fmax(0, e->steps - STEPS_A_SECOND * (from - e->steps_time)) + 1;
     e->steps_time = from;
     island->jammed = left > JAMMED * e->slack.speed || e->steps > STEPS_A_SECOND;
-    if (status == SIM_OK)
-        status = smooth_step(&e->smooth, &e->part, from, fmax(e->end, from + 1e-9), &island->step, e->motion,
-                             &island->ended);
+    if (status == SIM_OK) status = smooth_step(&e->smooth, &e->part, from, &island->step, e->motion, &island->ended);
     island->jammed = island->jammed || (status == SIM_OK && step_made_energy(e, from));
     island->ended = island->ended || island->jammed;
     island->relax = e->smooth.relax;
@@ -227,7 +237,7 @@ static int hand_over_all(Exact *e, double time) {
     e->world->profile.budget_spent += 1;
     system_clear(&e->group);
     for (int32_t i = 1; i < e->world->body_count && status == SIM_OK; i++)
-        if (is_tracked(e, i) && e->world->body[i].mode != MODE_REST && e->track[i].touch_time < e->end)
+        if (is_tracked(e, i) && e->world->body[i].mode != MODE_REST && e->track[i].touch_time < e->horizon)
             status = group_gather(e, i, time);
     group_send_to_crowd(e, time);
     return status;
@@ -313,6 +323,10 @@ int exact_run(Exact *e, double from, double until, double *reached) {
     while (status == SIM_OK && !crowded) {
         int32_t body, island;
         double time = next_event(e, &body, &island);
+        if (e->horizon <= fmin(time, until)) {
+            look_farther(e);
+            continue;
+        }
         if (time >= until) {
             *reached = until;
             return SIM_OK;

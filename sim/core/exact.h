@@ -41,7 +41,8 @@ typedef struct Exact {
     World *world;
     Recorder *recorder;
     Slack slack;
-    double tolerance, end;
+    double tolerance;
+    double horizon; /* touches are known up to here [s] */
     Track *track; /* of every body */
     Island *island;
     int32_t island_count;
@@ -64,7 +65,7 @@ typedef struct Exact {
     double steps, steps_time; /* of the integrator, likewise */
 } Exact;
 
-int exact_create(Exact *exact, World *world, Recorder *recorder, double tolerance, double end);
+int exact_create(Exact *exact, World *world, Recorder *recorder, double tolerance);
 void exact_destroy(Exact *exact);
 
 /* Take up all bodies at the start. */
@@ -73,7 +74,8 @@ int exact_start(Exact *exact, double time);
 /* Take up the bodies of the crowd again: overlaps that it left are held and let out. */
 int exact_take_back(Exact *exact, double time);
 
-/* Run to `until`, or to an earlier time at which bodies went to the crowd; *reached says which. */
+/* Run to `until`, or to an earlier time at which bodies went to the crowd; *reached says which.  What happens at `until`
+ * itself is left to the next call. */
 int exact_run(Exact *exact, double from, double until, double *reached);
 
 /* Write what is left to be written: samples up to the end. */

@@ -54,6 +54,7 @@ void record_state(Recorder *r, int32_t body, double time) {
 }
 
 int record_event(Recorder *r, const SimEvent *event) {
+    if (event->time > (double)(r->sample_count - 1) / r->fps) return SIM_OK;
     if (r->event_count == r->event_capacity) {
         int64_t capacity = r->event_capacity ? 2 * r->event_capacity : 64;
         SimEvent *grown = realloc(r->event, (size_t)capacity * sizeof *grown);

@@ -23,6 +23,7 @@ void record_motion(Recorder *recorder, int32_t body, const Motion *motion, doubl
 /* Write the samples of a body up to and at `time` from its present state, if one is due. */
 void record_state(Recorder *recorder, int32_t body, double time);
 
+/* Events after the last sample are left out. */
 int record_event(Recorder *recorder, const SimEvent *event);
 
 #endif

@@ -125,14 +125,15 @@ static int step_crowd(Sim *sim, double from, double to, double tolerance) {
 
 /* The end of the crowd's step that starts at `time`: steps end at every sample, and 60 times a second at least. */
 static double step_end(const SimOptions *options, double time) {
-    double rate = options->fps * ceil(60 / options->fps);
-    return (floor(time * rate * (1 + 1e-12) + 1e-6) + 1) / rate;
+    double parts = ceil(60 / options->fps), rate = options->fps * parts; /* steps a sample, and a second */
+    double next = floor(time * rate * (1 + 1e-12) + 1e-6) + 1, samples = floor(next / parts);
+    return samples * parts == next ? samples / options->fps : next / rate;
 }
 
 /* One step of the crowd, with what is beside it. */
-static int advance_crowd(Sim *sim, const SimOptions *options, double end, double *time) {
+static int advance_crowd(Sim *sim, const SimOptions *options, double *time) {
     World *world = &sim->world;
-    double next = fmin(step_end(options, *time), end), reached;
+    double next = step_end(options, *time), reached;
     int status = absorb(sim, *time, next);
     for (int32_t i = 1; i < world->body_count; i++) sim->entering[i] = world->body[i].mode != MODE_CROWD;
     if (status == SIM_OK) status = exact_run(&sim->exact, *time, next, &reached);
@@ -147,17 +148,17 @@ static int advance_crowd(Sim *sim, const SimOptions *options, double end, double
 static int advance(Sim *sim, const SimOptions *options, double end) {
     double time = 0, wait = FIRST_WAIT, again = INFINITY;
     int status = exact_start(&sim->exact, 0);
-    while (status == SIM_OK && time < end) {
+    while (status == SIM_OK && time <= end) { /* what happens at the last sample's time belongs to it */
         int32_t crowd = crowd_size(&sim->world);
         if (crowd == 0) {
-            status = exact_run(&sim->exact, time, end, &time);
+            status = exact_run(&sim->exact, time, nextafter(end, INFINITY), &time);
             again = time + wait;
         } else if (crowd <= FEW && time >= again) {
             status = exact_take_back(&sim->exact, time);
             wait *= 2;
             again = time + wait;
         } else {
-            status = advance_crowd(sim, options, end, &time);
+            status = advance_crowd(sim, options, &time);
         }
     }
     return status == SIM_OK ? exact_finish(&sim->exact) : status;
@@ -203,7 +204,7 @@ int32_t sim_run(Sim *sim, const SimOptions *options, double *frames, double *ene
     if (status == SIM_OK && world->piece) status = world_separate(world, options->tolerance);
     double separated = seconds_now();
     if (status == SIM_OK) status = recorder_create(&sim->recorder, world, options, frames);
-    if (status == SIM_OK) status = exact_create(&sim->exact, world, &sim->recorder, options->tolerance, end);
+    if (status == SIM_OK) status = exact_create(&sim->exact, world, &sim->recorder, options->tolerance);
     if (status == SIM_OK) status = advance(sim, options, end);
     if (status == SIM_OK && !find_energy(sim, options->sample_count, frames, energy)) status = SIM_NOT_FINITE;
     world->profile.separate_time = separated - start;

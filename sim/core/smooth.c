@@ -11,6 +11,7 @@
 #define FARTHEST 20.0         /* times the error that is corrected: a correction goes no farther */
 #define DECISIVE 1e-9         /* how far past its limit a force is when its event is taken, of the forces about */
 #define UNSURE 0.02       /* forces that redundant contacts may share out otherwise: ask again after this time [s] */
+#define LONGEST 2.0       /* a step [s]: within it, the ends of contacts' modes are looked for at the stages */
 #define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
 
 int smooth_create(Smooth *s, const World *world, double tolerance, Slack slack) {
@@ -448,7 +449,7 @@ static double force_scale(const System *system) {
     return scale > 0 ? scale : 1;
 }
 
-int smooth_step(Smooth *s, System *system, double from, double limit, double *h, Motion *motion, bool *ended) {
+int smooth_step(Smooth *s, System *system, double from, double *h, Motion *motion, bool *ended) {
     int32_t n = 6 * system->count;
     store(system, s->start);
     int status = derive(s, system, s->start, s->k[0]);
@@ -456,7 +457,7 @@ int smooth_step(Smooth *s, System *system, double from, double limit, double *h,
     bool unsure = find_unsure(s, system, scale);
     if (unsure) *h = fmin(*h, UNSURE);
     for (int tries = 0;; tries++) {
-        step = fmin(*h, limit - from);
+        step = fmin(*h, LONGEST);
         margin = INFINITY;
         for (int i = 1; i < STAGES && status == SIM_OK; i++) {
             status = stage(s, system, i, step);

@@ -29,9 +29,8 @@ int smooth_prepare(Smooth *smooth, System *system);
 int smooth_project(Smooth *smooth, System *system, double *left);
 int smooth_project_velocities(Smooth *smooth, System *system);
 
-/* One step from the system's states at time `from`, no farther than `limit`, by a length near *h; *h becomes the length to
- * try next.  motion[i] is filled for every member and ends where the step does, or at the first moment at which a contact's
+/* One step from the system's states at time `from`, by a length near *h; *h becomes the length to try next.  motion[i] is filled for every member and ends where the step does, or at the first moment at which a contact's
  * mode no longer holds (it would pull, leave its cone, stop slipping, or leave its side); *ended says whether one did. */
-int smooth_step(Smooth *smooth, System *system, double from, double limit, double *h, Motion *motion, bool *ended);
+int smooth_step(Smooth *smooth, System *system, double from, double *h, Motion *motion, bool *ended);
 
 #endif
