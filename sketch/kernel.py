@@ -113,7 +113,7 @@ _OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
 def measure(strokes: list[Array]) -> Strokes:
     """Clean, sample and measure strokes, each (n, 2) in pixels."""
     count = len(strokes)
-    xy = np.ascontiguousarray(np.concatenate(strokes), dtype=np.float64)
+    xy = np.ascontiguousarray(np.concatenate([np.empty((0, 2)), *strokes]), dtype=np.float64)
     ends = np.cumsum([len(s) for s in strokes], dtype=np.int32)
     out = Strokes(
         np.empty_like(xy),
