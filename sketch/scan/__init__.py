@@ -23,7 +23,7 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
     """
     from sketch.scan.tracing import trace_picture
 
-    picture = decode(data, page)
+    picture, sound = decode(data, page)
     height, width = picture.shape[:2]
     traced = trace_picture(picture)
     if stages is not None:
@@ -31,6 +31,8 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
 
         write_stages(stages, picture, traced)
     notes = [] if traced.strokes else ["no ink was found on the picture"]
+    if not sound:
+        notes.append("the picture's file is damaged: what could be decoded was read")
     if traced.specks:
         notes.append(f"left out {traced.specks} specks on the paper")
     strokes = [Stroke(points) for points in traced.strokes]

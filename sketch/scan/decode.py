@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import numpy as np
@@ -21,8 +24,8 @@ def is_picture(data: bytes) -> bool:
     return probe(data) is not None
 
 
-def decode(data: bytes, page: int = 1) -> NDArray[np.uint8]:
-    """The picture in a file's bytes, as displayed upright: BGR, shape (h, w, 3).
+def decode(data: bytes, page: int = 1) -> tuple[NDArray[np.uint8], bool]:
+    """The picture in a file's bytes, as displayed upright: BGR, shape (h, w, 3); and whether the file is sound.
 
     PNG, JPEG, WebP, TIFF and BMP; with the extra `scan` also HEIC, and a `page` of a PDF file, from 1.  Raises
     InputError for anything else, for a file that ends too early and for a picture of more than MAX_PIXELS, which
@@ -35,19 +38,21 @@ def decode(data: bytes, page: int = 1) -> NDArray[np.uint8]:
         raise InputError(
             "", "not a picture", "PNG, JPEG, WebP, TIFF, BMP, HEIC and PDF are read", kind="format"
         )
-    if header.format == "heic":
-        return _to_bgr8(_decode_heic(data))
     if header.format == "pdf":
-        return _to_bgr8(_decode_pdf(data, page))
+        return _to_bgr8(_decode_pdf(data, page)), True
     if page != 1:
         raise InputError("", f"there is no page {page}: the picture has one")
-    _check_size(header.width, header.height)
-    return _to_bgr8(_decode_with_cv2(data, header))
+    if header.format == "heic":
+        return _to_bgr8(_decode_heic(data)), True
+    _check_size(header)
+    picture, sound = _decode_with_cv2(data, header)
+    return _to_bgr8(picture), sound
 
 
-def _check_size(width: int, height: int) -> None:
+def _check_size(header: Header) -> None:
+    width, height = header.width, header.height
     if width < 1 or height < 1:
-        raise InputError("", f"a picture of {width} x {height} pixels")
+        raise _damaged(header)
     if width * height > MAX_PIXELS:
         raise InputError(
             "",
@@ -57,22 +62,50 @@ def _check_size(width: int, height: int) -> None:
         )
 
 
-def _decode_with_cv2(data: bytes, header: Header) -> NDArray[Any]:
+def _damaged(header: Header) -> InputError:
+    return InputError("", f"a {header.format.upper()} picture that is damaged or cut short", kind="format")
+
+
+def _decode_with_cv2(data: bytes, header: Header) -> tuple[NDArray[Any], bool]:
     import cv2
 
     raw = np.frombuffer(data, np.uint8)
     # a JPEG has neither transparency nor 16 bits, and is turned upright by cv2; the others are by us
     flags = cv2.IMREAD_COLOR if header.format == "jpeg" else cv2.IMREAD_UNCHANGED
-    try:
-        picture = cv2.imdecode(raw, flags)
-    except cv2.error:
-        picture = None
+    with _overheard() as said:
+        try:
+            picture = cv2.imdecode(raw, flags)
+        except cv2.error:
+            picture = None
     if picture is None:
-        raise InputError("", f"a {header.format.upper()} picture that is damaged or cut short", kind="format")
+        raise _damaged(header)
     stored = (header.height, header.width)
     if header.format != "jpeg" and header.orientation > 1 and picture.shape[:2] == stored:
         picture = _upright(picture, header.orientation)
-    return np.asarray(picture)
+    return np.asarray(picture), not any(word in said.lower() for word in (b"corrupt", b"error", b"premature"))
+
+
+@contextmanager
+def _overheard() -> Iterator[bytearray]:
+    """Keep what the decoders' C libraries print on standard error from the user, who gets a line of ours."""
+    said = bytearray()
+    try:
+        kept = os.dup(2)
+    except OSError:  # a program without standard error
+        yield said
+        return
+    reader, writer = os.pipe()
+    with suppress(OSError, AttributeError):  # what does not fit the pipe is lost and nobody waits
+        os.set_blocking(writer, False)
+    os.dup2(writer, 2)
+    os.close(writer)
+    try:
+        yield said
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        said += os.read(reader, 65536)  # of no length when nothing was said: the other end is closed
+        os.close(reader)
 
 
 def _decode_heic(data: bytes) -> NDArray[Any]:
@@ -82,7 +115,7 @@ def _decode_heic(data: bytes) -> NDArray[Any]:
         raise _lacks_extra("HEIC pictures") from None
     try:
         file = pillow_heif.open_heif(data, convert_hdr_to_8bit=True)
-        _check_size(*file.size)
+        _check_size(Header("heic", *file.size))
         picture = np.asarray(file)  # turned upright by the library
     except (ValueError, RuntimeError, SyntaxError, EOFError):
         raise InputError("", "a HEIC picture that is damaged or cut short", kind="format") from None

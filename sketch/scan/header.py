@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass
 
 __all__ = ["Header", "probe"]
@@ -13,7 +14,7 @@ class Header:
     """format: "png", "jpeg", "webp", "tiff", "bmp", "gif", "heic" or "pdf".
 
     width, height: [pixels] as stored, 0 where the header does not give them (HEIC and PDF, whose own
-    libraries are asked).  orientation: EXIF's, 1 (upright) to 8.
+    libraries are asked; a file that ends within its header).  orientation: EXIF's, 1 (upright) to 8.
     """
 
     format: str
@@ -23,35 +24,58 @@ class Header:
 
 
 def probe(data: bytes) -> Header | None:
-    """The header of a picture file, or None for what is no picture or ends within its header."""
-    try:
-        return _probe(data)
-    except (struct.error, IndexError):
+    """The header of a picture file, of no size where the file ends within it; None for what is no picture."""
+    kind = next((kind for kind, begins in _BEGINNINGS.items() if begins(data)), None)
+    if kind is None:
         return None
+    try:
+        return _READERS[kind](data) if kind in _READERS else Header(kind)
+    except (struct.error, IndexError):
+        return Header(kind)
 
 
-def _probe(data: bytes) -> Header | None:
-    if data[:8] == b"\x89PNG\r\n\x1a\n":
-        width, height = struct.unpack(">II", data[16:24])
-        return Header("png", width, height, _png_orientation(data))
-    if data[:3] == b"\xff\xd8\xff":
-        return _jpeg(data)
-    if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
-        return _webp(data)
-    if data[:4] in (b"II*\0", b"MM\0*"):
-        tags = _tiff_tags(data)
-        return Header("tiff", tags.get(256, 0), tags.get(257, 0), _valid(tags.get(274, 1)))
-    if data[:2] == b"BM" and len(data) > 26:
-        width, height = struct.unpack("<ii", data[18:26])
-        return Header("bmp", abs(width), abs(height))
-    if data[:6] in (b"GIF87a", b"GIF89a"):
-        width, height = struct.unpack("<HH", data[6:10])
-        return Header("gif", width, height)
-    if data[4:8] == b"ftyp" and data[8:12] in (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1"):
-        return Header("heic")
-    if data[:5] == b"%PDF-":
-        return Header("pdf")
-    return None
+def _is_heic(data: bytes) -> bool:
+    return data[4:8] == b"ftyp" and data[8:12] in (
+        b"heic",
+        b"heix",
+        b"hevc",
+        b"heim",
+        b"heis",
+        b"mif1",
+        b"msf1",
+    )
+
+
+_BEGINNINGS: dict[str, Callable[[bytes], bool]] = {
+    "png": lambda data: data.startswith(b"\x89PNG\r\n\x1a\n"),
+    "jpeg": lambda data: data.startswith(b"\xff\xd8\xff"),
+    "webp": lambda data: data.startswith(b"RIFF") and data[8:12] == b"WEBP",
+    "tiff": lambda data: data.startswith((b"II*\0", b"MM\0*")),
+    "bmp": lambda data: data.startswith(b"BM") and data[6:10] == b"\0\0\0\0",
+    "gif": lambda data: data.startswith((b"GIF87a", b"GIF89a")),
+    "heic": _is_heic,
+    "pdf": lambda data: data.startswith(b"%PDF-"),
+}
+
+
+def _png(data: bytes) -> Header:
+    width, height = struct.unpack(">II", data[16:24])
+    return Header("png", width, height, _png_orientation(data))
+
+
+def _tiff(data: bytes) -> Header:
+    tags = _tiff_tags(data)
+    return Header("tiff", tags.get(256, 0), tags.get(257, 0), _valid(tags.get(274, 1)))
+
+
+def _bmp(data: bytes) -> Header:
+    width, height = struct.unpack("<ii", data[18:26])
+    return Header("bmp", abs(width), abs(height))
+
+
+def _gif(data: bytes) -> Header:
+    width, height = struct.unpack("<HH", data[6:10])
+    return Header("gif", width, height)
 
 
 def _valid(orientation: int) -> int:
@@ -90,14 +114,14 @@ def _png_orientation(data: bytes) -> int:
     return 1
 
 
-def _jpeg(data: bytes) -> Header | None:
+def _jpeg(data: bytes) -> Header:
     at, orientation = 2, 1
     while True:
         while data[at] == 0xFF and data[at + 1] == 0xFF:  # fill bytes
             at += 1
         marker, size = struct.unpack_from(">xBH", data, at)
         if data[at] != 0xFF:
-            return None
+            return Header("jpeg")
         if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):  # start of frame
             height, width = struct.unpack_from(">HH", data, at + 5)
             return Header("jpeg", width, height, orientation)
@@ -106,7 +130,7 @@ def _jpeg(data: bytes) -> Header | None:
         at += 2 + size
 
 
-def _webp(data: bytes) -> Header | None:
+def _webp(data: bytes) -> Header:
     kind = data[12:16]
     if kind == b"VP8X":
         width = 1 + int.from_bytes(data[24:27], "little")
@@ -118,7 +142,7 @@ def _webp(data: bytes) -> Header | None:
     if kind == b"VP8 ":
         width, height = struct.unpack_from("<HH", data, 26)
         return Header("webp", width & 0x3FFF, height & 0x3FFF)
-    return None
+    return Header("webp")
 
 
 def _webp_orientation(data: bytes) -> int:
@@ -130,3 +154,13 @@ def _webp_orientation(data: bytes) -> int:
             return _exif_orientation(exif.removeprefix(b"Exif\0\0"))
         at += 8 + size + (size & 1)
     return 1
+
+
+_READERS: dict[str, Callable[[bytes], Header]] = {
+    "png": _png,
+    "jpeg": _jpeg,
+    "webp": _webp,
+    "tiff": _tiff,
+    "bmp": _bmp,
+    "gif": _gif,
+}

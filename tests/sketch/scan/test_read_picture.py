@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from sim.scene import InputError
+from sketch import recognize
 from sketch.scan import read_picture
 
 
@@ -44,20 +45,53 @@ def test_cross_and_ring_give_two_lines_and_a_closed_stroke(ending: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "data",
+    ("data", "kind"),
     [
-        b"",
-        b"this is text, not a picture",
-        encoded(white(50, 50))[:60],
-        b"\xff\xd8\xff",
-        b"\x89PNG\r\n\x1a\n",
-        png_header(100_000, 100_000),
-        png_header(0, 10),
+        (b"", "empty"),
+        (b"this is text, not a picture", "format"),
+        (b"\xff\xd8\xff", "format"),
+        (b"\x89PNG\r\n\x1a\n", "format"),
+        (png_header(100_000, 100_000), "size"),
+        (png_header(0, 10), "format"),
     ],
 )
-def test_what_is_no_picture_is_refused(data: bytes) -> None:
-    with pytest.raises(InputError):
+def test_what_is_no_picture_is_refused(data: bytes, kind: str) -> None:
+    with pytest.raises(InputError) as refused:
         read_picture(data)
+    assert refused.value.kind == kind
+
+
+FORMATS = [".png", ".jpg", ".webp", ".tiff", ".bmp", ".gif"]
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+@pytest.mark.parametrize("share", [0.02, 0.4, 0.9])
+def test_a_cut_file_is_refused_by_one_error_alone(
+    ending: str, share: float, capfd: pytest.CaptureFixture[str]
+) -> None:
+    data = encoded(np.random.default_rng(1).integers(0, 255, (60, 80, 3)).astype(np.uint8), ending)
+    with pytest.raises(InputError, match="damaged or cut short"):
+        read_picture(data[: int(share * len(data))])
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_a_file_with_wrong_bytes_is_refused_or_said_to_be_damaged(
+    ending: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """An uncompressed picture shows such bytes as ink, and nothing can tell."""
+    picture = white(300, 400)
+    cv2.circle(picture, (200, 150), 90, (30, 30, 30), 4, cv2.LINE_AA)
+    data = bytearray(encoded(picture, ending))
+    middle = len(data) // 2
+    data[middle : middle + 40] = b"\x5a" * 40
+    try:
+        sketch = read_picture(bytes(data))
+    except InputError:
+        pass
+    else:
+        assert ending == ".bmp" or any("damaged" in note for note in sketch.notes)
+    assert capfd.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (20, 30000), (30000, 20), (3, 3), (200, 300)])
@@ -66,6 +100,9 @@ def test_a_picture_without_ink_gives_no_strokes_and_says_so(shape: tuple[int, in
     sketch = read_picture(encoded(np.full((*shape, 3), level, np.uint8)))
     assert sketch.strokes == []
     assert any("no ink" in note for note in sketch.notes)
+    scene = recognize(sketch).scene
+    assert scene.bodies == []
+    assert any("no ink" in note for note in scene.notes)
 
 
 def test_a_sheet_on_a_dark_table_gives_the_ink_on_it_and_no_outline_of_the_sheet() -> None:
