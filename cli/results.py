@@ -60,23 +60,22 @@ class Run:
         elif kind == ".html":
             from cli.render.page import page
 
-            files.write(target, page(self.fitted, self.motion, self.title, self.ink))
+            files.write(target, page(self.fitted, self.motion, self.title, self.ink, self.followed))
         elif kind == ".svg":
             from cli.render.vector import svg
 
-            files.write(target, svg(self.fitted, self.ink))
+            files.write(target, svg(self._still(slice(1)), self.ink))
         elif kind == ".png":
             from cli.render.still import png, strobe
 
-            files.write(target, png(strobe(self.fitted, self.motion)))
+            files.write(target, png(strobe(self._still(slice(None)), self.motion)))
         else:
             self._write_video(files.stage(target), kind, progress)
 
     def _write_video(self, path: str, kind: str, progress: Callable[[float], None]) -> None:
         from cli.render.animation import Extras
 
-        ids = [body.id for body in self.scene.bodies]
-        follow = None if self.look.follow is None else ids.index(self.look.follow)
+        follow = self.followed
         extras = Extras(self.look.trails, self.look.vectors, follow)
         figure = self.fitted if follow is None else self._following(follow)
         if kind == ".gif":
@@ -87,6 +86,13 @@ class Run:
             from cli.render.video import write_video
 
             write_video(path, figure, self.motion, self.fps, kind, extras, progress)
+
+    @property
+    def followed(self) -> int | None:
+        """The index of the body in the middle."""
+        if self.look.follow is None:
+            return None
+        return [body.id for body in self.scene.bodies].index(self.look.follow)
 
     @cached_property
     def ink(self) -> Ink:
@@ -107,6 +113,18 @@ class Run:
         from cli.render.style import STYLES
 
         return Figure(self.scene, self.camera, STYLES[self.look.style], self.ink)
+
+    def _still(self, samples: slice) -> Figure:
+        """The figure for one picture: of all, or about the way of the followed body at these samples."""
+        if self.followed is None:
+            return self.fitted
+        from cli.render.camera import about, reach
+        from cli.render.figure import Figure
+        from cli.render.style import STYLES
+
+        path = self.motion.positions[samples, self.followed]
+        camera = about(self.camera, path, reach(self.scene, self.followed))
+        return Figure(self.scene, camera, STYLES[self.look.style], self.ink)
 
     def _following(self, body: int) -> Figure:
         """The figure under a camera that takes in all that comes into view on the way of a body."""

@@ -1,4 +1,4 @@
-"""What stands still in a picture: paper, ink, anchored bodies, supports; scale and gravity."""
+"""What stands still in a picture: paper, ink, anchored bodies, supports."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from cli.render.annotations import round_length
 from cli.render.camera import Camera
-from cli.render.canvas import BLOOM, ONE, SHIFT, Canvas, Points, fixed
-from cli.render.outline import inset
+from cli.render.canvas import BLOOM, ONE, SHIFT, THIN, Canvas, Points, fixed
+from cli.render.outline import inset, rim
 from cli.render.pen import Pen
 from cli.render.style import RGB, body_paints, mix
 from sim.scene import Joint, Scene
 
-__all__ = ["annotate", "backdrop", "grid_step", "length_label", "round_length"]
+__all__ = ["backdrop", "grid_step"]
 
 Array = NDArray[np.float64]
 
@@ -77,6 +78,8 @@ def _draw_bodies(canvas: Canvas, scene: Scene, camera: Camera, pen: Pen) -> None
         inner = fixed(inset(outline, BLOOM + pen.width))
         canvas.polygon(inner, paints.filling)
         _hatch(canvas, inner, pen.unit, paints.stripes)
+        for side in rim(outline, BLOOM, pen.width - BLOOM) if pen.width > THIN else ():
+            canvas.polygon(fixed(side), paints.edge)  # smoother than where cv2 fills a concave polygon
 
 
 def _hatch(canvas: Canvas, outline: Points, unit: float, color: RGB) -> None:
@@ -115,57 +118,3 @@ def _draw_support(canvas: Canvas, camera: Camera, pen: Pen, joint: Joint) -> Non
     for k in range(6):
         top = ends[0] + (ends[1] - ends[0]) * ((k + 0.7) / 6)
         pen.line(canvas, top, top + np.array([-6, 8]) * u, 0.7 * pen.width, ink)
-
-
-# ---------------------------------------------------------------- scale and gravity
-
-
-def annotate(canvas: Canvas, scene: Scene, scale: float, pen: Pen) -> None:
-    """The scale bar in the lower left and gravity in the upper right corner; scale: [pixels/m]."""
-    _draw_scale(canvas, scale, pen)
-    _draw_gravity(canvas, scene.gravity, pen)
-
-
-def _draw_scale(canvas: Canvas, scale: float, pen: Pen) -> None:
-    """A bar of a round length, a tenth to a fifth of the picture's width."""
-    width, height = pen.size
-    metres = round_length(0.2 * width / scale)
-    u, ink = pen.unit, mix(pen.style.ink, pen.style.paper, 0.15)
-    left, bottom = 26 * u, height - 24 * u
-    right = left + metres * scale
-    bar = [
-        ((left, bottom), (right, bottom)),
-        *(((x, bottom - 5 * u), (x, bottom + 5 * u)) for x in (left, right)),
-    ]
-    for halo, color in ((4 * u, pen.style.paper), (0.0, ink)):
-        for a, b in bar:
-            pen.line(canvas, np.array(a), np.array(b), pen.width + halo, color)
-    pen.write(canvas, length_label(metres), (left, bottom - 32 * u), 14)
-
-
-def _draw_gravity(canvas: Canvas, gravity: tuple[float, float], pen: Pen) -> None:
-    """An arrow the way things fall, or that they do not."""
-    u, ink = pen.unit, mix(pen.style.ink, pen.style.paper, 0.15)
-    g = np.array(gravity) * (1, -1)
-    size = float(np.hypot(*g))
-    if size == 0:
-        pen.write(canvas, "no gravity", (pen.size[0] - 130 * u, 20 * u), 14)
-        return
-    along = g / size
-    middle = np.array([pen.size[0] - 48 * u, 52 * u])
-    pen.arrow(canvas, middle - along * 26 * u, middle + along * 26 * u, 1.4 * pen.width, ink)
-    beside = middle + np.array([-30 * u, -8 * u]) + (abs(along[0]) > 0.7) * np.array([24 * u, 26 * u])
-    pen.write(canvas, "g", (float(beside[0]), float(beside[1])), 14)
-
-
-def round_length(metres: float) -> float:
-    """The longest of 1, 2 or 5 times a power of ten that is no longer."""
-    power = 10.0 ** math.floor(math.log10(metres))
-    return next(n * power for n in (5, 2, 1) if n * power <= metres * (1 + 1e-9))
-
-
-def length_label(metres: float) -> str:
-    for unit, size in (("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)):
-        if metres >= size * (1 - 1e-9):
-            return f"{metres / size:g} {unit}"
-    return f"{metres:g} m"

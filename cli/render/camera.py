@@ -14,11 +14,12 @@ from sim.scene import Circle, Scene
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
 
-__all__ = ["Camera", "along", "fit", "outside", "reach"]
+__all__ = ["Camera", "about", "along", "fit", "outside", "reach"]
 
 Array = NDArray[np.float64]
 
 MARGIN = 0.06  # of the picture, left free around a scene that has no page of its own
+CLOSER = 3.0
 SMALLEST = 60  # a picture shows at most so many times the largest moving body, however far things fly
 
 
@@ -115,6 +116,18 @@ def along(camera: Camera, path: Array) -> Camera:
     low, high = path.min(axis=0) - half, path.max(axis=0) + half
     width, height = (2 * math.ceil(x / 2) for x in (high - low) * camera.scale)
     return Camera((width, height), camera.scale, (float(low[0]), float(high[1])))
+
+
+def about(camera: Camera, path: Array, radius: float) -> Camera:
+    """A camera of the same size for a still about a path (n, 2) [m], with three times `radius` around it.
+
+    It comes at most CLOSER times as near as `camera`.
+    """
+    low, high = path.min(axis=0) - 3 * radius, path.max(axis=0) + 3 * radius
+    scale = min(CLOSER * camera.scale, *(np.array(camera.size) / np.maximum(high - low, 1e-9)))
+    middle = (low + high) / 2
+    half = np.array(camera.size) / (2 * scale)
+    return Camera(camera.size, float(scale), (float(middle[0] - half[0]), float(middle[1] + half[1])))
 
 
 def reach(scene: Scene, k: int) -> float:

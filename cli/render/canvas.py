@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from cli.render.outline import is_convex
 from cli.render.style import RGB
 
-__all__ = ["BLOOM", "ONE", "Box", "Canvas", "fixed", "paint"]
+__all__ = ["BLOOM", "ONE", "THIN", "Box", "Canvas", "fixed", "paint"]
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -30,6 +30,7 @@ FAR = 1 << 26  # nothing is drawn farther out, where cv2's integers would run ov
 # cv2's anti-aliased fills reach this far over the outline [pixels] (measured: 0.59 to 0.77, by direction);
 # whatever is filled is drawn smaller by it.
 BLOOM = 0.67
+THIN = 2 * BLOOM + 0.3  # lines of less [pixels] are too thin to be filled as polygons
 
 _HALF_A_ROW = np.array([0, ONE // 2], np.int32)
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cli.render.backdrop import annotate, backdrop
+from cli.render.annotations import annotate, scale_bar
+from cli.render.backdrop import backdrop
 from cli.render.camera import Camera
-from cli.render.canvas import BLOOM, ONE, SHIFT, Box, Canvas, Points, fixed, paint
+from cli.render.canvas import BLOOM, ONE, SHIFT, THIN, Box, Canvas, Points, fixed, paint
 from cli.render.ink import Ink
-from cli.render.outline import inset, is_convex, segment
+from cli.render.outline import inset, is_convex, rim, segment
 from cli.render.pen import Pen
 from cli.render.style import RGB, Style, body_paints, mix
 from sim.scene import Body, Circle, Joint, Scene
@@ -22,6 +24,7 @@ __all__ = ["Figure", "Part", "carried"]
 
 Array = NDArray[np.float64]
 
+ROUND = np.stack([f(np.arange(24) * np.pi / 12) for f in (np.cos, np.sin)], axis=1)  # a small disc's outline
 SMOOTH = 4  # pixels that a smoothed edge may reach over the outline: two in the planes of half the resolution
 
 
@@ -79,13 +82,17 @@ class Figure:
         ends = np.cumsum(lengths).tolist()
         self._slices = [slice(end - length, end) for length, end in zip(lengths, ends, strict=True)]
         self._paints: dict[tuple[bool, float], list[list[Any]]] = {}
+        # What lies in a corner of a camera that follows a body changes all the time: any is as good.
+        followed = size is not None
+        drawn = [stroke for _, stroke in ink]
+        self.bar = scale_bar(Scene() if followed else scene, camera, self.pen, () if followed else drawn)
         self.background = backdrop(scene, camera, self.pen, still, [stroke for _, stroke in moved])
         if size is None:
             self.annotate(self.background)
 
     def annotate(self, canvas: Canvas) -> None:
         """The scale bar and gravity."""
-        annotate(canvas, self.scene, self.camera.scale, self.pen)
+        annotate(canvas, self.scene.gravity, self.bar, self.pen)
 
     def caption(self, canvas: Canvas, text: str) -> Box:
         """Write in the upper left corner; returns the box that was written on."""
@@ -99,11 +106,16 @@ class Figure:
             return self._disc(k, shape.radius, line)
         v = np.array(shape.vertices)
         convex = is_convex(v)
+        pixel = 1 / self.camera.scale
+        if line > THIN and not convex:
+            # cv2 smooths the sides of convex polygons alone well: a concave one's outline is put on in pieces.
+            sides = rim(v, BLOOM * pixel, (line - BLOOM) * pixel)
+            filling = Part(k, inset(v, (line / 2 + BLOOM) * pixel), paints.filling, convex=False)
+            return [filling, *(Part(k, side, paints.edge) for side in sides)]
         parts = []
         if line:
-            parts.append(Part(k, inset(v, BLOOM / self.camera.scale), paints.edge, convex=convex))
-        inner = inset(v, (BLOOM + line) / self.camera.scale)
-        return [*parts, Part(k, inner, paints.filling, convex=convex)]
+            parts.append(Part(k, inset(v, BLOOM * pixel), paints.edge, convex=convex))
+        return [*parts, Part(k, inset(v, (BLOOM + line) * pixel), paints.filling, convex=convex)]
 
     def _disc(self, k: int, radius: float, line: float) -> list[Part]:
         paints, middle, pixels = self.paints[k], np.zeros((1, 2)), radius * self.camera.scale
@@ -133,7 +145,11 @@ class Figure:
         at = carried(self.scene.bodies[moving[0]], np.array([joint.position]))
         radii = (7.0 * u + 0.5, 7.0 * u + 0.5 - self.pen.width, max(2.4 * u, 1.4))
         rings = zip(radii, (style.ink, style.paper, style.ink), strict=True)
-        return [Part(moving[0], at, color, max(1, round((r - BLOOM) * ONE))) for r, color in rings]
+        # Polygons: cv2's circles of a few pixels are squares and crosses.
+        return [
+            Part(moving[0], at + ROUND * (max(r - BLOOM, 0.5) / self.camera.scale), color)
+            for r, color in rings
+        ]
 
     def place(self, positions: Array, angles: Array) -> Points:
         """Every part's points for bodies at positions (..., bodies, 2) [m] and angles (..., bodies) [rad].
@@ -186,13 +202,19 @@ class Figure:
             (left, top, max(left, right), max(top, bottom)) for left, top, right, bottom in corners.tolist()
         ]
 
-    def fill(self, canvas: Canvas, placed: Points, fade: float = 0.0) -> None:
-        """Draw the parts where `place` put them, shape (points, 2); `fade` mixes in the paper's colour."""
+    def fill(
+        self, canvas: Canvas, placed: Points, fade: float = 0.0, only: Sequence[int] | None = None
+    ) -> None:
+        """Draw the parts where `place` put them, shape (points, 2); `fade` mixes in the paper's colour.
+
+        only: the parts to draw, by their indices.
+        """
         import cv2
 
         values = self._values(canvas.is_yuv, fade)
         for (plane, points, shift), colors in zip(canvas.views(placed), values, strict=False):
-            for part, where, value in zip(self.parts, self._slices, colors, strict=True):
+            for i in range(len(self.parts)) if only is None else only:
+                part, where, value = self.parts[i], self._slices[i], colors[i]
                 if part.thick:
                     cv2.polylines(plane, [points[where]], False, value, part.thick, cv2.LINE_AA, shift)
                 elif part.radius:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["inset", "is_convex", "segment"]
+__all__ = ["inset", "is_convex", "rim", "segment"]
 
 Array = NDArray[np.float64]
 
@@ -51,6 +51,13 @@ def inset(v: Array, distance: float) -> Array:
         j = (k + 1) % len(v)
         out[k] = out[j] = (moved[k] + moved[j]) / 2
     return out
+
+
+def rim(v: Array, outer: float, inner: float) -> list[Array]:
+    """The band between two insets of a polygon (n, 2), as a quadrilateral (4, 2) for every side."""
+    a, b = inset(v, outer), inset(v, inner)
+    ends = zip(a, np.roll(a, -1, axis=0), np.roll(b, -1, axis=0), b, strict=True)
+    return [np.array(quadrilateral) for quadrilateral in ends]
 
 
 def segment(a: Array, b: Array, width: float) -> Array:

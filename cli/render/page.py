@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from cli.render.backdrop import grid_step, length_label, round_length
+from cli.render.backdrop import grid_step
 from cli.render.figure import Figure, carried
 from cli.render.ink import Ink
 from cli.render.style import RGB
@@ -27,10 +27,12 @@ PLAYER = Path(__file__).with_name("player")
 SCRIPTS = ("recording", "stage", "graphs", "controls")
 
 
-def page(figure: Figure, motion: Trajectory, title: str, ink: Ink | None = None) -> bytes:
-    """The whole page as UTF-8."""
+def page(
+    figure: Figure, motion: Trajectory, title: str, ink: Ink | None = None, follow: int | None = None
+) -> bytes:
+    """The whole page as UTF-8. follow: a body that stays in the middle."""
     # Within a script element only these two could end it or start a comment.
-    data = msgspec.json.encode(_data(figure, motion, ink or [])).decode().replace("<", "\\u003c")
+    data = msgspec.json.encode(_data(figure, motion, ink or [], follow)).decode().replace("<", "\\u003c")
     parts = {
         "title": title.replace("&", "&amp;").replace("<", "&lt;"),
         "style": (PLAYER / "player.css").read_text("utf-8").strip(),
@@ -46,14 +48,13 @@ def page(figure: Figure, motion: Trajectory, title: str, ink: Ink | None = None)
     return "".join(out).encode()
 
 
-def _data(figure: Figure, motion: Trajectory, ink: Ink) -> dict[str, Any]:
-    scene, camera, style = figure.scene, figure.camera, figure.style
+def _data(figure: Figure, motion: Trajectory, ink: Ink, follow: int | None) -> dict[str, Any]:
+    scene, camera, style, bar = figure.scene, figure.camera, figure.style, figure.bar
     samples = np.concatenate(
         [motion.positions, motion.angles[..., None], motion.velocities, motion.angular_velocities[..., None]],
         axis=2,
     )
     interval = float(motion.times[1] - motion.times[0]) if len(motion) > 1 else 1.0
-    bar = round_length(0.2 * camera.size[0] / camera.scale)
     return {
         "fps": 1 / interval,
         "count": len(motion),
@@ -61,7 +62,9 @@ def _data(figure: Figure, motion: Trajectory, ink: Ink) -> dict[str, Any]:
         "size": list(camera.size),
         "scale": camera.scale,
         "corner": list(camera.corner),
-        "bar": {"metres": bar, "label": length_label(bar)},
+        "follow": -1 if follow is None else follow,
+        "body": _farthest(motion) if follow is None else follow,
+        "bar": {"metres": bar.metres, "label": bar.label, "at": [bar.left, bar.bottom]},
         "paper": _css(style.paper),
         "dark": _css(style.ink),
         "drawn": _css(style.drawn),
@@ -72,6 +75,12 @@ def _data(figure: Figure, motion: Trajectory, ink: Ink) -> dict[str, Any]:
         "movesInk": style.moves_ink,
         "motion": base64.b64encode(samples.astype("<f4").tobytes()).decode(),
     }
+
+
+def _farthest(motion: Trajectory) -> int:
+    """The body whose way is the longest; 0 where there is none."""
+    steps = np.hypot(*np.moveaxis(np.diff(motion.positions, axis=0), 2, 0))
+    return int(np.argmax(steps.sum(axis=0))) if steps.size else 0
 
 
 def _body(figure: Figure, k: int) -> dict[str, Any]:

@@ -52,12 +52,19 @@ class Pen:
         triangle = np.array([tip, neck + across * head / 2, neck - across * head / 2])
         canvas.polygon(fixed(inset(triangle, BLOOM)), color)
 
+    def length(self, text: str, height: float) -> int:
+        """Of a text [pixels]."""
+        return int(self._mask(text, height).shape[1])
+
+    def _mask(self, text: str, height: float) -> NDArray[Any]:
+        return lettering(text, max(8, round(height * self.unit)))
+
     def write(self, canvas: Canvas, text: str, corner: tuple[float, float], height: float) -> Box:
         """Letters with their upper left corner there [pixels]; returns the box that was written on."""
         import cv2
 
         x, y = (2 * round(c / 2) for c in corner)
-        mask = lettering(text, max(8, round(height * self.unit)))
+        mask = self._mask(text, height)
         reach = 2 * round(2 * self.unit) + 1
         halo: Any = cv2.dilate(mask, np.ones((reach, reach), np.uint8))
         canvas.blend(halo, (x, y), self.style.paper)  # legible on whatever lies under it

@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cli.render.animation import CHUNK
-from cli.render.backdrop import round_length
+from cli.render.annotations import round_length
 from cli.render.canvas import ONE, Canvas
 from cli.render.figure import Figure
+from sim.scene import Circle
 
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
 
 __all__ = ["png", "strobe"]
 
-FLASHES = 9  # at least so many ghosts; at most 2.5 times as many, because their interval is a round number
+FLASHES = 16  # at least so many; at most 2.5 times as many, because their interval is a round number
+WIDTHS, CLOSEST = 0.7, 14.0  # between two ghosts: of a body's width, and [units of the pen]
 FADE = 0.62  # how pale a ghost is
 
 
@@ -33,7 +35,9 @@ def png(canvas: Canvas) -> bytes:
 def strobe(figure: Figure, motion: Trajectory) -> Canvas:
     """All of a motion in one picture, as physics books print it: ghosts at equal times, then the end.
 
-    The flashes stop when the motion does, or when everything that moves has left the picture.
+    A machine, the bodies that joints hold together, leaves no ghost where it lies nearly as in one that is there
+    already: what hardly moves, or comes the same way again, would cover what it shows.  The flashes stop when the
+    motion does, or when everything that moves has left the picture.
     """
     canvas = Canvas.plain(figure.camera.size, figure.style.paper)
     canvas.copy_from(figure.background)
@@ -44,11 +48,46 @@ def strobe(figure: Figure, motion: Trajectory) -> Canvas:
         return canvas
     interval = float(motion.times[1] - motion.times[0])
     step = max(1, round(round_length(end * interval / FLASHES) / interval))
+    final = figure.place(motion.positions[end], motion.angles[end])
+    machines = [(parts, _apart(figure, parts), [final]) for parts in _machines(figure)]
     for k in range(0, end, step):
-        figure.fill(canvas, figure.place(motion.positions[k], motion.angles[k]), FADE)
-    figure.fill(canvas, figure.place(motion.positions[end], motion.angles[end]))
-    figure.caption(canvas, f"every {step * interval:.3g} s, to {motion.times[end]:.3g} s")
+        placed = figure.place(motion.positions[k], motion.angles[k])
+        for parts, apart, shown in machines:
+            if all(figure.differences(placed, other)[parts].max() > apart for other in shown):
+                shown.append(placed)
+                figure.fill(canvas, placed, FADE, parts)
+    figure.fill(canvas, final)
+    figure.caption(canvas, f"{step * interval:.3g} s or more apart, to {motion.times[end]:.3g} s")
     return canvas
+
+
+def _machines(figure: Figure) -> list[list[int]]:
+    """The parts of each machine: of the moving bodies that joints hold together."""
+    scene = figure.scene
+    moving = {body.id: k for k, body in enumerate(scene.bodies) if not body.anchored}
+    machine = {k: k for k in moving.values()}
+    for joint in scene.joints:
+        pair = [machine[moving[name]] for name in joint.bodies if name in moving]
+        for k in machine if len(pair) == 2 else ():
+            if machine[k] == pair[1]:
+                machine[k] = pair[0]
+    return [
+        [i for i, part in enumerate(figure.parts) if machine[part.body] == first]
+        for first in sorted(set(machine.values()))
+    ]
+
+
+def _apart(figure: Figure, parts: list[int]) -> float:
+    """How far a point of a machine has to move for another ghost [fixed-point]: most of its narrowest body."""
+    widths = []
+    for k in {figure.parts[i].body for i in parts}:
+        shape = figure.scene.bodies[k].shape
+        if isinstance(shape, Circle):
+            widths.append(2 * shape.radius)
+        else:
+            widths.append(float(np.ptp(np.array(shape.vertices), axis=0).min()))
+    least = min(widths, default=0.0) * figure.camera.scale
+    return max(WIDTHS * least, CLOSEST * figure.pen.unit) * ONE
 
 
 def _last_change(figure: Figure, motion: Trajectory) -> int:

@@ -7,7 +7,6 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from cli.render.backdrop import length_label, round_length
 from cli.render.figure import Figure
 from cli.render.ink import Ink
 from cli.render.style import RGB, Paints
@@ -103,9 +102,8 @@ def _hatch(name: str, period: float, paints: Paints) -> str:
 
 def _annotations(figure: Figure) -> list[str]:
     """The scale bar and gravity."""
-    (width, height), u, ink = figure.camera.size, figure.pen.unit, _css(figure.style.ink)
-    metres = round_length(0.2 * width / figure.camera.scale)
-    x, y, long = 26 * u, height - 24 * u, metres * figure.camera.scale
+    width, u, ink = figure.camera.size[0], figure.pen.unit, _css(figure.style.ink)
+    x, y, long = figure.bar.left, figure.bar.bottom, figure.bar.long
     font = (
         f'font-family="sans-serif" font-size="{18 * u:g}" fill="{ink}" '
         f'stroke="{_css(figure.style.paper)}" stroke-width="{4 * u:g}" paint-order="stroke"'
@@ -113,7 +111,7 @@ def _annotations(figure: Figure) -> list[str]:
     bar = f"M{x:g} {y - 5 * u:g}v{10 * u:g}m0 {-5 * u:g}h{long:.2f}m0 {-5 * u:g}v{10 * u:g}"
     out = [
         f'<path d="{bar}" stroke="{ink}" stroke-width="{figure.pen.width:g}"/>',
-        f'<text x="{x:g}" y="{y - 12 * u:g}" {font}>{length_label(metres)}</text>',
+        f'<text x="{x:g}" y="{y - 12 * u:g}" {font}>{figure.bar.label}</text>',
     ]
     g = np.array(figure.scene.gravity) * (1, -1)
     if not g.any():

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cli.render.backdrop import round_length
+from cli.render.annotations import round_length
 from cli.render.camera import fit, outside
 from cli.render.canvas import BLOOM, ONE, Canvas, fixed
 from cli.render.figure import Figure

@@ -71,7 +71,7 @@ class Player {
     this.gear = 0;
     this.playing = false;
     this.loop = false;
-    this.body = Math.max(0, recording.bodies.findIndex((b) => !b.anchored));
+    this.body = recording.body;
     this.vectors = false;
     this.trails = false;
     this.changed = () => {};

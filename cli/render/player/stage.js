@@ -23,7 +23,7 @@ class Stage {
   draw() {
     const { context: c, recording, player } = this;
     const scale = recording.scale * this.zoom;
-    const [left, top] = recording.corner;
+    const [left, top] = this.corner();
     c.setTransform(1, 0, 0, 1, 0, 0);
     c.fillStyle = recording.paper;
     c.fillRect(0, 0, this.canvas.width, this.canvas.height);
@@ -42,8 +42,17 @@ class Stage {
     this.drawGravity();
   }
 
+  /** The world point in the upper left corner [m]: it goes with the body that is followed. */
+  corner() {
+    const { corner, follow, size: [width, height], scale } = this.recording;
+    if (follow < 0) return corner;
+    const [x, y] = this.recording.at(follow, this.player.time);
+    return [x - width / (2 * scale), y + height / (2 * scale)];
+  }
+
   drawGrid() {
-    const { grid: { step, color }, corner: [left, top], size: [width, height], scale } = this.recording;
+    const { grid: { step, color }, size: [width, height], scale } = this.recording;
+    const [left, top] = this.corner();
     const [right, bottom] = [left + width / scale, top - height / scale];
     const c = this.context;
     c.beginPath();
@@ -209,9 +218,10 @@ class Stage {
 
   drawScale() {
     const c = this.context;
-    const { corner: [left, top], size: [, height], scale, bar } = this.recording;
+    const { scale, bar } = this.recording;
+    const [left, top] = this.corner();
     const u = this.unit;
-    const [x, y] = [left + 26 * u, top - height / scale + 24 * u];
+    const [x, y] = [left + bar.at[0] / scale, top - bar.at[1] / scale];
     c.beginPath();
     this.path([[x, y + 5 * u], [x, y - 5 * u]]);
     this.path([[x, y], [x + bar.metres, y]]);
@@ -223,7 +233,8 @@ class Stage {
   }
 
   drawGravity() {
-    const { corner: [left, top], size: [width], scale, gravity } = this.recording;
+    const { size: [width], scale, gravity } = this.recording;
+    const [left, top] = this.corner();
     const u = this.unit;
     const size = Math.hypot(...gravity);
     const x = left + width / scale - 48 * u;
@@ -260,8 +271,9 @@ class Stage {
   bodyAt(clientX, clientY) {
     const box = this.canvas.getBoundingClientRect();
     const scale = (this.recording.scale * box.width) / this.recording.size[0];
-    const x = this.recording.corner[0] + (clientX - box.left) / scale;
-    const y = this.recording.corner[1] - (clientY - box.top) / scale;
+    const [left, top] = this.corner();
+    const x = left + (clientX - box.left) / scale;
+    const y = top - (clientY - box.top) / scale;
     const c = this.context;
     for (let k = this.recording.bodies.length - 1; k >= 0; k -= 1) {
       const [bx, by, angle] = this.recording.at(k, this.player.time);
