@@ -7,6 +7,6 @@ from __future__ import annotations
 
 from sketch.formats import load_sketch
 from sketch.ink import Sketch, Stroke
-from sketch.recognize import Reading, Recognition, recognize
+from sketch.recognize import Reading, Recognition, Recognizer, recognize
 
-__all__ = ["Reading", "Recognition", "Sketch", "Stroke", "load_sketch", "recognize"]
+__all__ = ["Reading", "Recognition", "Recognizer", "Sketch", "Stroke", "load_sketch", "recognize"]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +14,7 @@ from sim.scene import Body, Circle, Polygon, Rectangle
 from sketch.kernel import depth, is_simple
 from sketch.reading import Reading
 
-__all__ = ["Drawn", "draw_body", "touch"]
+__all__ = ["Bodies", "Drawn", "draw_body", "touch"]
 
 Array = NDArray[np.float64]
 
@@ -42,6 +44,20 @@ class Drawn:
         return depth(float(point[0]), float(point[1]), self.outline)
 
 
+class Bodies:
+    """All bodies of a page, to be asked which of them are at a place."""
+
+    def __init__(self, drawn: list[Drawn]) -> None:
+        self.drawn = drawn
+        self._low = np.array([d.outline.min(axis=0) for d in drawn]).reshape(-1, 2)
+        self._high = np.array([d.outline.max(axis=0) for d in drawn]).reshape(-1, 2)
+
+    def near(self, at: Array, reach: float) -> list[Drawn]:
+        """Those whose bounding box, widened by `reach` [pixels], has the point, in order of drawing."""
+        close = ((self._low - reach <= at) & (self._high + reach >= at)).all(axis=1)
+        return [self.drawn[k] for k in np.flatnonzero(close).tolist()]
+
+
 def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float) -> Drawn:
     """The body of a reading: x = px / ppm, y = -py / ppm; its vertices about its centroid."""
     outline = np.ascontiguousarray(reading.outline)
@@ -49,36 +65,40 @@ def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float
         outline = _thick(outline, pen)
         if not is_simple(outline):  # a line that turns within its own thickness
             outline = _thick(reading.outline[[0, -1]], pen)
-    world = outline * (np.array([1.0, -1.0]) / pixels_per_metre)
+    world = [complex(x, -y) / pixels_per_metre for x, y in outline.tolist()]
     angle = 0.0
+    area, middle = _moments(world)
     shape: Circle | Rectangle | Polygon
     if reading.kind == "circle":
-        centre = world.mean(axis=0)
-        shape = Circle(float(np.hypot(*(world - centre).T).mean()))
-    elif len(outline) == 4 and reading.kind in ("rectangle", "bar"):
-        centre = world.mean(axis=0)
-        (ax, ay), (bx, by) = (world[1] - world[0]).tolist(), (world[2] - world[1]).tolist()
-        sides = math.hypot(ax, ay), math.hypot(bx, by)
-        angle = math.atan2(ay, ax)
+        middle = sum(world) / len(world)
+        shape = Circle(sum(abs(z - middle) for z in world) / len(world))
+    elif len(world) == 4 and reading.kind in ("rectangle", "bar"):
+        middle = sum(world) / 4
+        along = world[1] - world[0]
+        sides = abs(along), abs(world[2] - world[1])
+        angle = cmath.phase(along)
         quarter = round(angle / (math.pi / 2))  # as upright as a rectangle can be said
         angle -= quarter * math.pi / 2
         shape = Rectangle((sides[1], sides[0]) if quarter % 2 else sides)
     else:
-        centre = _centroid(world)
-        local = (world - centre).tolist()
-        if _area(world) < 0:
+        local = [(z.real - middle.real, z.imag - middle.imag) for z in world]
+        if area < 0:
             local.reverse()
-        shape = Polygon([(x, y) for x, y in local])
+        shape = Polygon(local)
     body = Body(
         id=f"b{number}",
         shape=shape,
-        position=(float(centre[0]), float(centre[1])),
+        position=(middle.real, middle.imag),
         angle=angle,
         color=PALETTE[(number - 1) % len(PALETTE)],
         strokes=list(reading.strokes),
         score=round(reading.score, 4),
     )
-    size = float(np.ptp(outline, axis=0).max()) if reading.kind == "bar" else math.sqrt(abs(_area(outline)))
+    size = (
+        float(np.ptp(outline, axis=0).max())
+        if reading.kind == "bar"
+        else pixels_per_metre * math.sqrt(abs(area))
+    )
     return Drawn(reading, outline, size, body)
 
 
@@ -94,21 +114,15 @@ def touch(a: Drawn, b: Drawn, at: Array, radius: float) -> bool:
     return False
 
 
-def _area(p: Array) -> float:
-    """Signed, by the shoelace formula."""
-    x, y = p[:, 0] - p[0, 0], p[:, 1] - p[0, 1]
-    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
-
-
-def _centroid(p: Array) -> Array:
-    x, y = p[:, 0] - p[0, 0], p[:, 1] - p[0, 1]
-    cross = x * np.roll(y, -1) - y * np.roll(x, -1)
-    total = 3 * float(cross.sum())
-    if total == 0:
-        return np.asarray(p.mean(axis=0))
-    cx = float(((x + np.roll(x, -1)) * cross).sum()) / total
-    cy = float(((y + np.roll(y, -1)) * cross).sum()) / total
-    return np.asarray(p[0] + [cx, cy])
+def _moments(corners: list[complex]) -> tuple[float, complex]:
+    """The signed area and the centroid of a polygon, by the shoelace formula about its first corner."""
+    area, first = 0.0, 0j
+    at = corners[0]
+    for a, b in pairwise(corners[1:]):
+        twice = ((a - at).conjugate() * (b - at)).imag
+        area += twice / 2
+        first += twice * (a + b - 2 * at) / 6
+    return area, at + first / area if area else sum(corners) / len(corners)
 
 
 def _thick(line: Array, pen: float) -> Array:

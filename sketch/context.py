@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.kernel import depth
+from sketch.proposals import Box, Proposed
 from sketch.scoring import Fitted
 
-__all__ = ["with_context"]
+__all__ = ["Context"]
 
 Array = NDArray[np.float64]
 
@@ -30,14 +31,48 @@ DOT = 0.012  # of the page: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
 
 
-def with_context(candidates: list[Fitted], gains: list[float], chosen: list[int], size: float) -> list[float]:
-    """The gains, given the bodies (`chosen` candidates) that the ink by itself makes likely.
+class Context:
+    """What the likely bodies say of the marks on and around them; kept for ink whose surroundings stay."""
 
-    size: of the page [pixels].
-    """
-    gains = list(gains)
-    bodies = _Bodies([candidates[k] for k in chosen if candidates[k].closed])
-    for k, c in enumerate(candidates):
+    def __init__(self) -> None:
+        self._known: dict[Proposed, tuple[list[Fitted], float, list[float]]] = {}
+
+    def gains(
+        self,
+        proposed: list[Proposed],
+        candidates: list[Fitted],
+        chosen: list[int],
+        size: float,
+    ) -> list[float]:
+        """The gains, given the bodies (`chosen` candidates) that the ink by itself makes likely.
+
+        proposed: whose candidates are `candidates`, one after another.  size: of the page [pixels].
+        """
+        closed = [k for k in chosen if candidates[k].closed]
+        boxes = np.concatenate([np.empty((0, 4)), *(p.boxes for p in proposed)])
+        bodies = _Bodies([candidates[k] for k in closed], boxes[closed])
+        known, self._known = self._known, {}
+        out: list[float] = []
+        for p, near in zip(proposed, bodies.beside([p.box for p in proposed]), strict=True):
+            there = known.get(p)
+            its = [bodies.bodies[b] for b in near]
+            if there is None or there[0] != its or there[1] != size:
+                there = its, size, _told(p, _Bodies(its, bodies.boxes[near]), size)
+            self._known[p] = there
+            out += there[2]
+        first = _first_arrow(candidates, out, chosen)
+        for k, c in enumerate(candidates):
+            if c.kind == "arrow" and first:
+                out[k] += -ONE_ARROW if first.isdisjoint(c.pieces) else ONE_ARROW
+        for k in _letters(candidates, out, chosen, LETTER * size):
+            out[k] -= TOUCHING
+        return out
+
+
+def _told(proposed: Proposed, bodies: _Bodies, size: float) -> list[float]:
+    """The gains of one piece's proposals, given the bodies around them."""
+    gains = list(proposed.gains)
+    for k, c in enumerate(proposed.candidates):
         if gains[k] < -NO_BODY:
             continue
         extent = _extent(c.outline)
@@ -51,12 +86,6 @@ def with_context(candidates: list[Fitted], gains: list[float], chosen: list[int]
             gains[k] -= SLIP * (bodies.slip(c, extent) or extent < TWIG * size)
         elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
             gains[k] += ANCHORS
-    first = _first_arrow(candidates, gains, chosen)
-    for k, c in enumerate(candidates):
-        if c.kind == "arrow" and first:
-            gains[k] += ONE_ARROW if first & set(c.pieces) else -ONE_ARROW
-    for k in _letters(candidates, gains, chosen, LETTER * size):
-        gains[k] -= TOUCHING
     return gains
 
 
@@ -110,11 +139,24 @@ def _extent(outline: Array) -> float:
 class _Bodies:
     """The likely bodies, to be asked which of them are at a place."""
 
-    def __init__(self, bodies: list[Fitted]) -> None:
+    def __init__(self, bodies: list[Fitted], boxes: Array) -> None:
         self.bodies = bodies
-        self.low = np.array([b.outline.min(axis=0) for b in bodies]).reshape(-1, 2)
-        self.high = np.array([b.outline.max(axis=0) for b in bodies]).reshape(-1, 2)
+        self.boxes = boxes
+        self.low, self.high = boxes[:, :2], boxes[:, 2:]
         self.extent = np.hypot(*(self.high - self.low).T)
+
+    def beside(self, boxes: list[Box]) -> list[list[int]]:
+        """Which bodies can matter to marks in each of these boxes."""
+        out: list[list[int]] = [[] for _ in boxes]
+        if not self.bodies or not boxes:
+            return out
+        x0, y0, x1, y1 = np.array(boxes).T[:, :, None]
+        r = np.maximum(0.1 * self.extent, np.hypot(np.maximum(x1 - x0, 0), np.maximum(y1 - y0, 0)))
+        close = (self.low[:, 0] - r <= x1) & (self.low[:, 1] - r <= y1)
+        close &= (self.high[:, 0] + r >= x0) & (self.high[:, 1] + r >= y0)
+        for i, b in np.argwhere(close).tolist():
+            out[i].append(b)
+        return out
 
     def near(self, x: float, y: float, reach: float | Array) -> list[int]:
         if not self.bodies:

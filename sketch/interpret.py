@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import Joint, Scene, View
-from sketch.bodies import Drawn, draw_body, touch
+from sketch.bodies import Bodies, Drawn, draw_body, touch
 from sketch.ink import Sketch
 from sketch.reading import Reading
 
@@ -41,12 +41,13 @@ def interpret(
         draw_body(r, k, view.pixels_per_metre, PEN * longer)
         for k, r in enumerate((r for r in readings if r.solid), start=1)
     ]
-    joints = _pivots(drawn, view.pixels_per_metre, notes)
+    bodies = Bodies(drawn)
+    joints = _pivots(bodies, view.pixels_per_metre, notes)
     drawn = [d for d in drawn if d.reading.solid]
     _number(drawn, joints)
     for reading in readings:
         if reading.kind == "anchor":
-            _anchor(reading, drawn, notes)
+            _anchor(reading, bodies, notes)
     pull = _gravity(readings, notes) if gravity is None else gravity
     notes += [text for d in drawn for text in _doubts(d)]
     left = sorted(s for r in readings if r.kind == "unread" and r.forced is None for s in r.strokes)
@@ -61,8 +62,8 @@ def _view(sketch: Sketch, scale: float | None) -> tuple[View, float]:
     given."""
     longer = max(sketch.width or 0.0, sketch.height or 0.0)
     if longer == 0:
-        ink = np.concatenate([s.points for s in sketch.strokes])
-        longer = 1.1 * float(np.ptp(ink, axis=0).max()) if len(ink) else 1.0
+        ink = np.concatenate([np.empty((0, 2)), *(s.points for s in sketch.strokes)])
+        longer = (1.1 * float(np.ptp(ink, axis=0).max()) if len(ink) else 0.0) or 1.0
     ppm = scale or sketch.pixels_per_metre or longer / PAGE
     return View(pixels_per_metre=ppm, width=sketch.width, height=sketch.height), longer
 
@@ -80,18 +81,20 @@ def _number(drawn: list[Drawn], joints: list[Joint]) -> None:
 # ---------------------------------------------------------------- pivots
 
 
-def _pivots(drawn: list[Drawn], ppm: float, notes: list[str]) -> list[Joint]:
+def _pivots(bodies: Bodies, ppm: float, notes: list[str]) -> list[Joint]:
     """Small circles over two bodies that overlap, or over one beside which they are small, become pivots."""
     joints: list[Joint] = []
     places: list[tuple[Array, list[Drawn]]] = []
-    circles = [d for d in drawn if d.reading.kind == "circle" and d.reading.forced not in ("ball", "circle")]
+    circles = [
+        d for d in bodies.drawn if d.reading.kind == "circle" and d.reading.forced not in ("ball", "circle")
+    ]
     for circle in sorted(circles, key=lambda d: -d.size):  # so that a pivot is asked of bodies, not of pivots
         at = circle.outline.mean(axis=0)
         radius = circle.size / math.sqrt(math.pi)
-        if circle.reading.forced is None and _pinned(at, radius, circles):
+        if circle.reading.forced is None and _pinned(circle, at, radius, bodies):
             continue
         forced = circle.reading.forced == "pivot"
-        under, odds = _under(circle, at, radius, drawn, forced)
+        under, odds = _under(circle, at, radius, bodies, forced)
         if not under:
             continue
         rival = ("ball", 1 - odds) if odds >= 0.5 else ("pivot", odds)
@@ -114,29 +117,27 @@ def _pivots(drawn: list[Drawn], ppm: float, notes: list[str]) -> list[Joint]:
     return joints
 
 
-def _pinned(at: Array, radius: float, circles: list[Drawn]) -> bool:
+def _pinned(circle: Drawn, at: Array, radius: float, bodies: Bodies) -> bool:
     """Whether a circle has a pivot of its own: a much smaller circle at its centre. It is a wheel then, no pin."""
     return any(
-        d.size / math.sqrt(math.pi) < 2 * JOINS * radius
+        d is not circle
+        and d.reading.kind == "circle"
+        and d.size / math.sqrt(math.pi) < 2 * JOINS * radius
         and math.dist(at, d.outline.mean(axis=0)) < JOINS * radius
-        for d in circles
+        for d in bodies.near(at, JOINS * radius)
     )
 
 
 def _under(
-    circle: Drawn, at: Array, radius: float, drawn: list[Drawn], forced: bool
+    circle: Drawn, at: Array, radius: float, bodies: Bodies, forced: bool
 ) -> tuple[list[Drawn], float]:
     """The bodies that a circle would be a pivot of, in order of drawing, and how likely it is one rather
     than a ball."""
     near = []
-    for d in drawn:
-        if d is circle or not d.reading.solid:
-            continue
-        reach = NEAR * radius
-        low, high = d.outline.min(axis=0) - reach, d.outline.max(axis=0) + reach
-        if (low <= at).all() and (at <= high).all() and radius < 2 * JOINS * d.size:
+    for d in bodies.near(at, NEAR * radius):
+        if d is not circle and d.reading.solid and radius < 2 * JOINS * d.size:
             depth = d.depth(at)
-            if depth < reach:
+            if depth < NEAR * radius:
                 near.append((depth, d))
     near.sort(key=lambda t: t[0])
     if not near or (near[0][0] > 0 and not forced):
@@ -148,7 +149,7 @@ def _under(
             break
     limit = JOINS if len(under) == 2 else NAILS
     odds = 1.0 if forced else 1 / (1 + (radius / (limit * min(d.size for d in under))) ** 6)
-    return sorted(under, key=drawn.index), odds
+    return sorted(under, key=bodies.drawn.index), odds
 
 
 def _ids(bodies: list[Drawn]) -> str:
@@ -162,16 +163,16 @@ def _either(circle: Drawn, taken: str, other: str) -> str:
 # ---------------------------------------------------------------- anchors, gravity, doubts
 
 
-def _anchor(reading: Reading, drawn: list[Drawn], notes: list[str]) -> None:
+def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
     """Fix the body that an X lies over: of several the one drawn last, of none the one that its bars
     reach."""
     at = reading.outline.mean(axis=0)
-    over = [d for d in drawn if d.depth(at) < 0]
+    reach = float(np.hypot(*np.ptp(reading.outline, axis=0))) / 2
+    near = [(d.depth(at), d) for d in bodies.near(at, reach) if d.reading.solid]
+    over = [d for depth, d in near if depth < 0]
     if not over:
-        reach = float(np.hypot(*np.ptp(reading.outline, axis=0))) / 2
-        near = [(d.depth(at), k) for k, d in enumerate(drawn)]
-        if near and min(near)[0] < reach:
-            over = [drawn[min(near)[1]]]
+        depth, nearest = min(near, key=lambda t: t[0], default=(reach, None))
+        over = [nearest] if nearest is not None and depth < reach else []
     if not over:
         notes.append(f"the X of {reading.named} is over no body: it anchors nothing")
         return

@@ -19,6 +19,7 @@ __all__ = [
     "fit_arrow",
     "fit_closed",
     "is_simple",
+    "joined",
     "measure",
     "off_outline",
 ]
@@ -125,6 +126,13 @@ def measure(strokes: list[Array]) -> Strokes:
     )
     _strokes(xy.ctypes.data, ends.ctypes.data, count, *(part.ctypes.data for part in out))
     return out
+
+
+def joined(a: Strokes, b: Strokes) -> Strokes:
+    """The measures of strokes and of further ones; their points are left out."""
+    samples, residual, vertices = (np.concatenate(pair) for pair in zip(a[3:], b[3:], strict=True))
+    rows = np.concatenate([a.measure, b.measure])
+    return Strokes(a.points[:0], a.ends[:0], rows, samples, residual, vertices)
 
 
 def fit_closed(

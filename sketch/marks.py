@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import combinations, pairwise
 
@@ -144,7 +145,7 @@ def _within(page: Page, piece: Piece, head: Array) -> bool:
     return True
 
 
-def with_strays(page: Page, mark: Fitted, free: list[float]) -> list[Fitted]:
+def with_strays(page: Page, mark: Fitted, free: Mapping[int, float]) -> list[Fitted]:
     """A cross or an arrow together with smaller ink along it: a side that joins its bars, a barb drawn twice.
 
     free: nats to say each piece freely.

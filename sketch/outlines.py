@@ -13,7 +13,7 @@ from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline
 from sketch.pieces import Page
 from sketch.scoring import PARAMETER, Fitted, misfit, unread
 
-__all__ = ["Chain", "gone_over", "read_outline"]
+__all__ = ["LEAST_AXIS", "Chain", "gone_over", "read_outline"]
 
 Array = NDArray[np.float64]
 Chain = list[tuple[int, bool]]  # pieces that go once around, each with whether it was drawn the other way
@@ -66,7 +66,8 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
         off = fit.residual[4]
         cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + BOX + gaps
         out.append(Fitted("rectangle", names, cost, corners, scale))
-    return [replace(f, gap=fit.gap / fit.ink) for f in out]
+    narrow = min(math.hypot(b[0, 0], b[1, 0]), math.hypot(b[0, 1], b[1, 1]))
+    return [replace(f, gap=fit.gap / fit.ink, narrow=narrow) for f in out]
 
 
 def _course(parts: list[Array]) -> Array:

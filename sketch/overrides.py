@@ -52,7 +52,7 @@ def normal_overrides(given: Mapping[int | tuple[int, ...], str] | None, stroke_c
 
 def forced_reading(page: Page, strokes: tuple[int, ...], kind: str) -> Fitted | None:
     """The strokes read as they are said to be, however badly they fit; None where they have no length."""
-    pieces = [p for p in page.pieces if p.stroke in strokes]
+    pieces = [page.pieces[s] for s in strokes if s in page.pieces]
     if not pieces or kind == "ignore":
         return None
     names = tuple(p.index for p in pieces)
@@ -71,7 +71,8 @@ def forced_reading(page: Page, strokes: tuple[int, ...], kind: str) -> Fitted | 
 def _arrow(page: Page, names: tuple[int, ...]) -> Fitted | None:
     found = [
         read_arrow(page, group, tail, toward)
-        for group, tail, toward in arrow_groups(page)
+        for i in names
+        for group, tail, toward in arrow_groups(page, page.pieces[i])
         if tuple(sorted(group)) == names
     ]
     return min((f for f in found if f is not None), key=lambda f: f.cost, default=None)
@@ -86,8 +87,7 @@ def _bars(pieces: list[Piece]) -> np.ndarray:
 def _around(page: Page, pieces: list[Piece]) -> Chain:
     """The pieces in an order that goes around: the tightest that closes, else each to the nearest end."""
     wanted = {p.index for p in pieces}
-    others = {p.index for p in page.pieces} - wanted
-    for chain in closing_chains(page, others) if len(pieces) > 1 else ():
+    for chain in closing_chains(page, min(wanted)) if len(pieces) > 1 else ():
         if {i for i, _ in chain} == wanted:
             return chain
     chain, left = [(pieces[0].index, False)], pieces[1:]

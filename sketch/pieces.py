@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sketch.ink import Sketch
-from sketch.kernel import Strokes, measure
+from sketch.kernel import joined, measure
 
-__all__ = ["Page", "Piece", "page_of"]
+__all__ = ["LOOSE", "Looked", "Page", "Piece", "page_of"]
 
 DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
+LOOSE = 0.3  # gaps of a chain, as a share of its ink, overshoots counted as gaps
+REACH = 1.5 * LOOSE  # the longest single gap, as a share of the pieces on its two sides
+CHOICES = 6  # ends that a chain may go on to
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
+End = tuple[int, int]  # of a piece: its index, and 0 or 1
+Near = tuple[float, int, int]  # how far an end is [pixels], and which
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -67,24 +72,90 @@ class Piece:
         return np.array(self.vertices[k][: k + 1])
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Page:
-    """All pieces of a sketch.
+@dataclass(eq=False, slots=True)
+class Looked:
+    """What somebody asked of the page: the answers stay the same while no ink comes or goes there.
 
     Attributes:
-        pieces: those that have a length.
-        strokes: their measures as arrays, for the fits; a piece's row is its stroke.
-        size: diagonal of the ink's bounding box [pixels].
-        boxes: of the pieces, (pieces, 4).
-        rivals: of each piece, the other pieces that are the same ink, followed in another way: no two of them are in
-            one reading.  Without any, empty.
+        boxes: least x, least y, greatest x, greatest y [pixels].
+        ends: of pieces (piece, 0 or 1), whose neighbours were asked for.
     """
 
-    pieces: list[Piece]
-    strokes: Strokes
-    size: float
-    boxes: Array
-    rivals: Sequence[Set[int]] = ()
+    boxes: list[tuple[float, float, float, float]] = field(default_factory=list)
+    ends: set[End] = field(default_factory=set)
+
+
+class Page:
+    """The pieces of a sketch: they come and go, and keep their index.
+
+    Attributes:
+        pieces: by index, those that have a length, in the order of drawing.
+        strokes: their measures as arrays, for the fits; a piece's row is its stroke.
+        size: of the page [pixels]; the canvas', or so much more as the ink takes.
+        rivals: of each stroke, the others that are the same ink, followed in another way: no two of them are in
+            one reading.  Without any, empty.
+        looked: where it is noted what is asked of the page.
+    """
+
+    def __init__(self, canvas: float = 0.0, rivals: Sequence[Set[int]] = ()) -> None:
+        """canvas: its diagonal [pixels], or 0."""
+        self.rivals = rivals
+        self.pieces: dict[int, Piece] = {}
+        self.strokes = measure([])
+        self.size = self._canvas = canvas
+        self.looked = Looked()
+        self._dot = 0.0
+        self._boxes = np.empty((0, 4))
+        self._ends = np.empty((0, 2))  # of the loose pieces; rows 2i and 2i + 1 are of piece i
+        self._lengths = np.empty(0)
+        self._near: dict[End, list[Near]] = {}
+
+    def add(self, strokes: list[Array]) -> range:
+        """Measure further strokes, each (n, 2) in pixels; returns their indices."""
+        first = len(self._boxes)
+        new = measure(strokes)
+        points = np.split(new.points[: new.ends[-1]], new.ends[:-1])
+        self.strokes = joined(self.strokes, new)
+        count = len(strokes)
+        self._boxes = np.concatenate([self._boxes, np.full((count, 4), np.nan)])
+        self._ends = np.concatenate([self._ends, np.full((2 * count, 2), np.nan)])
+        self._lengths = np.concatenate([self._lengths, np.zeros(2 * count)])
+        residuals, vertices = new.residual.tolist(), new.vertices.tolist()
+        for k, m in enumerate(new.measure.tolist()):
+            if m[0] > 0:
+                i = first + k
+                self.pieces[i] = _piece(i, i, points[k], m, residuals[k], vertices[k], self._dot)
+                self._boxes[i] = self.pieces[i].box
+        return range(first, first + count)
+
+    def remove(self, index: int) -> None:
+        """Take a piece away, which is not loose any more."""
+        if self.pieces.pop(index, None) is not None:
+            self._boxes[index] = np.nan
+
+    def settle(self) -> list[int]:
+        """Measure the page's size and its usual stroke anew; returns the pieces that are other pieces now."""
+        live = list(self.pieces)
+        extent = 3 * self.strokes.measure[live, 6]
+        # The median, without np.median: that loads numpy.ma, a twentieth of what reading a sketch costs.
+        middle = np.sort(extent)[[(len(live) - 1) // 2, len(live) // 2]].mean() if live else 0.0
+        dot = DOT * float(middle)
+        small = np.flatnonzero(extent < max(dot, self._dot)) if dot != self._dot else ()
+        changed = [live[k] for k in small]
+        self._dot = dot
+        for i in changed:
+            p = self.pieces[i]
+            self.pieces[i] = replace(p, observations=_observations(p.length, p.extent, dot))
+        size = self._canvas
+        if live:
+            boxes = self._boxes[live]
+            ink = math.hypot(*(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).tolist())
+            if ink > size:  # in steps, so that a page that grows is seldom another page
+                size = 2 ** (math.ceil(2 * math.log2(ink)) / 2)
+        self.size = size
+        return changed
+
+    # ------------------------------------------------------------ what lies where
 
     def apart(self, index: int, others: Iterable[int]) -> bool:
         """Whether a piece shares no ink with some others."""
@@ -92,31 +163,84 @@ class Page:
 
     def within(self, outline: Array, reach: float) -> list[Piece]:
         """The pieces that lie in an outline's bounding box, widened by `reach` [pixels]."""
-        low, high = outline.min(axis=0) - reach, outline.max(axis=0) + reach
-        b = self.boxes
-        inside = (b[:, 0] >= low[0]) & (b[:, 1] >= low[1]) & (b[:, 2] <= high[0]) & (b[:, 3] <= high[1])
+        x0, y0 = (outline.min(axis=0) - reach).tolist()
+        x1, y1 = (outline.max(axis=0) + reach).tolist()
+        self.looked.boxes.append((x0, y0, x1, y1))
+        b = self._boxes
+        inside = (b[:, 0] >= x0) & (b[:, 1] >= y0) & (b[:, 2] <= x1) & (b[:, 3] <= y1)
         return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
+
+    def touching(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:
+        """The pieces whose bounding box has a point in this one."""
+        self.looked.boxes.append((x0, y0, x1, y1))
+        b = self._boxes
+        inside = (b[:, 0] <= x1) & (b[:, 1] <= y1) & (b[:, 2] >= x0) & (b[:, 3] >= y0)
+        return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
+
+    def near(self, end: End) -> list[Near]:
+        """The nearest ends of other loose pieces that a chain may go on to from this end."""
+        self.looked.ends.add(end)
+        found = self._near.get(end)
+        if found is None:
+            close, gaps = self._reached(end)
+            if self.rivals:
+                own = np.array([self.apart(end[0], (j // 2,)) for j in close.tolist()], dtype=bool)
+                close, gaps = close[own], gaps[own]
+            order = np.argsort(gaps, kind="stable")[:CHOICES]
+            found = [
+                (g, j // 2, j % 2) for g, j in zip(gaps[order].tolist(), close[order].tolist(), strict=True)
+            ]
+            self._near[end] = found
+        return found
+
+    def _reached(self, end: End) -> tuple[NDArray[np.intp], Array]:
+        """Rows of the ends of other loose pieces within reach of an end, and how far they are [pixels]."""
+        row = 2 * end[0] + end[1]
+        x, y = self._ends[row].tolist()
+        gaps = np.hypot(self._ends[:, 0] - x, self._ends[:, 1] - y)
+        reached = gaps <= REACH * (self._lengths + self._lengths[row])
+        reached[row - end[1] : row - end[1] + 2] = False
+        close = np.flatnonzero(reached)
+        return close, gaps[close]
+
+    def loosen(self, index: int) -> set[End]:
+        """Let chains go through a piece. Returns the ends whose neighbours are others now."""
+        p = self.pieces[index]
+        self._ends[2 * index : 2 * index + 2] = p.ends
+        self._lengths[2 * index : 2 * index + 2] = p.length
+        changed = set()
+        for e in (0, 1) if self._near else ():
+            close, gaps = self._reached((index, e))
+            for j, gap in zip(close.tolist(), gaps.tolist(), strict=True):
+                known = self._near.get((j // 2, j % 2))
+                if known is not None and (len(known) < CHOICES or gap <= known[-1][0]):
+                    changed.add((j // 2, j % 2))
+        for end in changed:
+            self._near.pop(end)
+        return changed
+
+    def tighten(self, index: int) -> set[End]:
+        """Let no chain go through a piece any more. Returns the ends whose neighbours are others now."""
+        changed = set()
+        for e in (0, 1):
+            if np.isnan(self._ends[2 * index, 0]):
+                break
+            self._near.pop((index, e), None)
+            for j in self._reached((index, e))[0].tolist():
+                if any(i == index for _, i, _ in self._near.get((j // 2, j % 2), ())):
+                    changed.add((j // 2, j % 2))
+        for end in changed:
+            self._near.pop(end)
+        self._ends[2 * index : 2 * index + 2] = np.nan
+        return changed
 
 
 def page_of(sketch: Sketch) -> Page:
-    strokes = measure([s.points for s in sketch.strokes])
-    ends = strokes.ends.tolist()
-    residuals, vertices = strokes.residual.tolist(), strokes.vertices.tolist()
-    pieces: list[Piece] = []
-    spread = strokes.measure[strokes.measure[:, 0] > 0, 6]
-    # The median, without np.median: that loads numpy.ma, a twentieth of what reading a sketch costs.
-    middle = np.sort(spread)[[(len(spread) - 1) // 2, len(spread) // 2]].mean() if len(spread) else 0.0
-    dot = DOT * 3 * float(middle)
-    for s, m in enumerate(strokes.measure.tolist()):
-        if m[0] == 0:
-            continue
-        points = strokes.points[ends[s - 1] if s else 0 : ends[s]]
-        pieces.append(_piece(len(pieces), s, points, m, residuals[s], vertices[s], dot))
-    if not pieces:
-        return Page([], strokes, 0.0, np.empty((0, 4)))
-    boxes = np.array([p.box for p in pieces])
-    width, height = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
-    return Page(pieces, strokes, math.hypot(width, height), boxes)
+    """All strokes of a sketch, measured, none of them loose yet."""
+    page = Page(math.hypot(sketch.width or 0.0, sketch.height or 0.0))
+    page.add([s.points for s in sketch.strokes])
+    page.settle()
+    return page
 
 
 def _piece(
@@ -141,7 +265,11 @@ def _piece(
         gap=gap,
         extent=extent,
         scale=math.sqrt(2) * across if gap < 0.15 * length else extent / 2,
-        observations=OBSERVATIONS * length / (math.pi * max(extent, dot)),
+        observations=_observations(length, extent, dot),
         residual=residual,
         vertices=vertices,
     )
+
+
+def _observations(length: float, extent: float, dot: float) -> float:
+    return OBSERVATIONS * length / (math.pi * max(extent, dot))

@@ -6,6 +6,9 @@ The answer is the set of readings, each piece of ink in at most one, with the gr
 exactly (`sketch.search`): no other set of the readings at hand describes the page in fewer nats. It is
 found twice: first from the ink alone, then with what the bodies of the first answer say about the marks on
 and around them (`sketch.context`).
+
+Readings depend on the ink around them alone (`sketch.proposals`). So a `Recognizer` that gets one stroke more
+looks anew at its neighbourhood, and comes to the same scene as one that gets them all at once.
 """
 
 from __future__ import annotations
@@ -14,29 +17,30 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from sim.scene import Scene
-from sketch.context import with_context
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.scene import InputError, Scene
+from sketch.context import Context
 from sketch.explain import explain
-from sketch.grouping import arrow_groups, closing_chains, crosses
-from sketch.ink import Sketch
+from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
 from sketch.kernel import depth
-from sketch.marks import read_arrow, read_bar, read_cross, with_strays
-from sketch.outlines import gone_over, read_outline
 from sketch.overrides import Overrides, forced_reading, normal_overrides
-from sketch.pieces import Page, page_of
+from sketch.pieces import Page
+from sketch.proposals import Proposals, Proposed, proposing
 from sketch.reading import Reading
-from sketch.scoring import Fitted, unread
-from sketch.search import best_packing
+from sketch.scoring import Fitted
+from sketch.search import Solved, best_packing
 
-__all__ = ["Reading", "Recognition", "recognize"]
+__all__ = ["Reading", "Recognition", "Recognizer", "recognize"]
 
-PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
+Array = NDArray[np.float64]
+
 SAME_PLACE = 0.2  # of a body's size: outlines nowhere further apart are one body, gone over
 KINDS = {"ellipse": "polygon", "free": "polygon", "cross": "anchor", "arrow": "gravity"}
-
-
 FORCED = 1e6  # nats that a reading gains by having been said by the caller
+ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,114 +72,121 @@ def recognize(
         overrides: what some strokes are, as ``{(3, 4): "anchor", 7: "ball", 9: "ignore"}``: one of
             `sketch.overrides.KINDS`; the rest is read around them.
     """
-    forced = normal_overrides(overrides, len(sketch.strokes))
-    page = page_of(sketch)
-    candidates = read_groups(page)
-    free = [unread(p) for p in page.pieces]
-    gains = [sum(free[i] for i in c.pieces) - c.cost for c in candidates]
-    if forced:
-        candidates, gains = _with_forced(page, candidates, gains, forced)
-    likely = _best(candidates, gains)
-    size = max(page.size, math.hypot(sketch.width or 0.0, sketch.height or 0.0))
-    gains = with_context(candidates, gains, likely, size)
-    chosen = _one_a_place(candidates, gains, _best(candidates, gains))
-    readings = _readings(page, candidates, gains, chosen)
-    read = {s for r in readings for s in r.strokes}
-    for i, stroke in enumerate(sketch.strokes):
-        if i not in read:
-            readings.append(Reading("unread", (i,), 0.0, stroke.points))
-    for reading in readings:
-        reading.forced = forced.get(reading.strokes)
-    for strokes, kind in forced.items():
+    return Recognizer(sketch).recognition(scale=scale, gravity=gravity, overrides=overrides)
+
+
+class Recognizer:
+    """A page that is read while it is drawn: strokes come and go, and the scene is the same as from scratch.
+
+    ::
+
+        page = Recognizer(Sketch([], width=1280, height=720))
+        key = page.add(Stroke(points))      # at every pen-up
+        page.recognition().scene
+        page.remove(key)                    # undo
+    """
+
+    def __init__(self, sketch: Sketch) -> None:
+        """sketch: the canvas, and the ink that is on it already."""
+        self._canvas = sketch
+        self._proposals = Proposals(math.hypot(sketch.width or 0.0, sketch.height or 0.0))
+        self._context = Context()
+        self._alone: Solved = {}
+        self._together: Solved = {}
+        self._strokes: dict[int, Stroke] = {}
+        if sketch.strokes:
+            keys = self._proposals.add([_thinned(s.points) for s in sketch.strokes])
+            self._strokes.update(zip(keys, sketch.strokes, strict=True))
+
+    def add(self, stroke: Stroke) -> int:
+        """Add a stroke, drawn last; returns a key to remove it by."""
+        (key,) = self._proposals.add([_thinned(stroke.points)])
+        self._strokes[key] = stroke
+        return key
+
+    def remove(self, key: int) -> None:
+        """Take back the stroke that `add` returned this key for; those of the first sketch have 0, 1, 2, ..."""
+        if key not in self._strokes:
+            raise InputError("key", f"there is no stroke {key}")
+        del self._strokes[key]
+        self._proposals.remove(key)
+
+    @property
+    def sketch(self) -> Sketch:
+        """The canvas with all its strokes, in the order of drawing."""
+        return replace(self._canvas, strokes=list(self._strokes.values()))
+
+    def recognition(
+        self,
+        *,
+        scale: float | None = None,
+        gravity: tuple[float, float] | None = None,
+        overrides: Mapping[int | tuple[int, ...], str] | None = None,
+    ) -> Recognition:
+        """The page as it is now. The arguments are those of `recognize`; strokes count from 0 as they are now."""
+        forced = normal_overrides(overrides, len(self._strokes))
+        keys = list(self._strokes)
+        candidates, gains, chosen = self._explained({tuple(keys[s] for s in k): v for k, v in forced.items()})
+        sketch = self.sketch
+        readings = _readings(candidates, gains, chosen, {key: s for s, key in enumerate(keys)})
+        read = {s for r in readings for s in r.strokes}
+        for i, stroke in enumerate(sketch.strokes):
+            if i not in read:
+                readings.append(Reading("unread", (i,), 0.0, stroke.points))
         for reading in readings:
-            if kind == "ignore" and reading.kind == "unread" and reading.strokes[0] in strokes:
-                reading.forced = kind
-    scene = interpret(sketch, readings, scale, gravity)
-    return Recognition(sketch, scene, readings)
+            reading.forced = forced.get(reading.strokes)
+        for strokes, kind in forced.items():
+            for reading in readings:
+                if kind == "ignore" and reading.kind == "unread" and reading.strokes[0] in strokes:
+                    reading.forced = kind
+        return Recognition(sketch, interpret(sketch, readings, scale, gravity), readings)
+
+    def _explained(self, forced: Overrides) -> tuple[list[Fitted], list[float], list[int]]:
+        """All candidates with their gains, and which of them explain the page best."""
+        proposed = self._proposals.all()
+        if forced:
+            proposed = _with_forced(self._proposals.page, proposed, forced)
+        candidates = [c for p in proposed for c in p.candidates]
+        gains = [g for p in proposed for g in p.gains]
+        likely = _best(candidates, gains, self._alone)
+        gains = self._context.gains(proposed, candidates, likely, self._proposals.page.size)
+        return candidates, gains, _one_a_place(candidates, gains, _best(candidates, gains, self._together))
 
 
-def _with_forced(
-    page: Page, candidates: list[Fitted], gains: list[float], forced: Overrides
-) -> tuple[list[Fitted], list[float]]:
-    """The candidates that leave the forced strokes alone, and the forced readings."""
+def _thinned(points: Array) -> Array:
+    """A stroke's points, of very many those at least a share of its length apart."""
+    if len(points) <= 2 * ENOUGH:
+        return points
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    step = np.floor(along * (ENOUGH / max(along[-1], 1e-9)))
+    kept = np.flatnonzero(np.diff(step, prepend=-1.0))
+    return np.asarray(points[np.append(kept, len(points) - 1)])
+
+
+def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> list[Proposed]:
+    """What leaves the forced strokes alone, and their forced readings."""
     taken = {s for strokes in forced for s in strokes}
-    free = [k for k, c in enumerate(candidates) if not any(page.pieces[i].stroke in taken for i in c.pieces)]
+    out = []
+    for p in proposed:
+        free = [k for k, c in enumerate(p.candidates) if taken.isdisjoint(c.pieces)]
+        if len(free) < len(p.candidates):
+            out.append(
+                replace(p, candidates=[p.candidates[k] for k in free], gains=[p.gains[k] for k in free])
+            )
+        else:
+            out.append(p)
     found = [forced_reading(page, strokes, kind) for strokes, kind in forced.items()]
     extra = [f for f in found if f is not None]
-    return [candidates[k] for k in free] + extra, [gains[k] for k in free] + [FORCED] * len(extra)
-
-
-# ---------------------------------------------------------------- candidates
-
-
-def read_groups(page: Page) -> list[Fitted]:
-    """Every reading of every group of pieces that lie together."""
-    out: list[Fitted] = []
-    complete, plain = set(), set()  # pieces that close by themselves; and those that look like nothing else
-    single = {}
-    for p in page.pieces:
-        if p.gap < 0.2 * p.length:
-            single[p.index] = read_outline(page, [(p.index, False)])
-            best = min(single[p.index], key=lambda f: f.cost)
-            loop = p.gap < 0.12 * p.length and p.scale > 0.2 * p.extent
-            if best.gap < 0.1 and (loop or best.cost < 0.6 * unread(p)):
-                complete.add(p.index)
-                if best.cost < PLAIN * unread(p):
-                    plain.add(p.index)
-    outlines = []
-    for chain in closing_chains(page, complete):
-        alone = single.get(chain[0][0]) if len(chain) == 1 else None
-        outlines.append(alone or read_outline(page, chain))
-    for found in outlines:
-        out += found
-        out += _gone_over(page, found)
-    for p in page.pieces:
-        out += _kept(read_bar(p))
-    free = [unread(p) for p in page.pieces]
-    for names in crosses(page, plain):
-        for cross in _kept(read_cross(page, names)):
-            out += [cross, *with_strays(page, cross, free)]
-    arrows: dict[tuple[int, ...], Fitted] = {}
-    for names, tail, toward in arrow_groups(page, plain):
-        arrow = read_arrow(page, names, tail, toward)
-        for mark in [arrow, *with_strays(page, arrow, free)] if arrow else []:
-            if mark.pieces not in arrows or mark.cost < arrows[mark.pieces].cost:
-                arrows[mark.pieces] = mark
-    out += arrows.values()
-    return out
-
-
-def _kept(found: Fitted | None) -> list[Fitted]:
-    return [] if found is None else [found]
-
-
-def _gone_over(page: Page, found: list[Fitted]) -> list[Fitted]:
-    """The readings of an outline together with the other pieces that run along it, as drawn once more."""
-    best = min(found, key=lambda f: f.cost)
-    costs: dict[int, float] = {}
-    for p in page.within(best.outline, 0.3 * best.scale):
-        if p.index in best.pieces or not page.apart(p.index, best.pieces):
-            continue
-        cost = gone_over(page, best, p.index)
-        if cost < unread(p):
-            costs[p.index] = cost
-    sets = [tuple(costs)] if costs else []
-    if len(costs) > 1:
-        sets += [(j,) for j in costs]
-    return [
-        replace(f, pieces=tuple(sorted((*f.pieces, *more))), cost=f.cost + sum(costs[j] for j in more))
-        for f in found
-        for more in sets
-    ]
+    return [*out, proposing(extra, [FORCED] * len(extra))]
 
 
 # ---------------------------------------------------------------- the best explanation
 
 
-def _best(candidates: list[Fitted], gains: list[float]) -> list[int]:
+def _best(candidates: list[Fitted], gains: list[float], solved: Solved) -> list[int]:
     """Indices of the disjoint candidates with the greatest total gain."""
     live = [k for k, gain in enumerate(gains) if gain > 0]
-    chosen = best_packing([frozenset(candidates[k].pieces) for k in live], [gains[k] for k in live])
+    chosen = best_packing([candidates[k].pieces for k in live], [gains[k] for k in live], solved)
     return [live[k] for k in chosen]
 
 
@@ -184,23 +195,29 @@ def _one_a_place(candidates: list[Fitted], gains: list[float], chosen: list[int]
 
     No two bodies have one place; that is known of the pair, and so after the search, which scores each by itself.
     """
-    out: list[int] = []
-    for k in sorted(chosen, key=lambda k: -gains[k]):
-        c = candidates[k]
-        twin = next((j for j in out if _same_place(c, candidates[j])), None)
-        if twin is None:
-            out.append(k)
+    order = sorted(chosen, key=lambda k: -gains[k])
+    closed = [k for k in order if candidates[k].closed]
+    scale = np.array([candidates[k].scale for k in closed])
+    at = np.array([candidates[k].outline.mean(axis=0) for k in closed]).reshape(-1, 2)
+    far = SAME_PLACE * np.maximum(scale, scale[:, None])
+    close = np.abs(scale - scale[:, None]) <= far
+    close &= np.abs(at[:, None] - at).max(axis=2, initial=0.0) <= far
+    joined: dict[int, int] = {}  # into which reading another went
+    now: dict[int, int] = {}  # what has become of a chosen reading
+    for a, b in np.argwhere(np.triu(close, 1)).tolist():
+        k, j = closed[a], closed[b]
+        if k in joined or j in joined or not _same_place(candidates[j], candidates[now.get(k, k)]):
             continue
-        kept = candidates[twin]
-        both = replace(kept, pieces=tuple(sorted((*kept.pieces, *c.pieces))))
-        candidates.append(both)
-        gains.append(gains[twin] + gains[k])
-        out[out.index(twin)] = len(candidates) - 1
-    return out
+        joined[j] = k
+        kept, other = candidates[now.get(k, k)], candidates[j]
+        candidates.append(replace(kept, pieces=tuple(sorted((*kept.pieces, *other.pieces)))))
+        gains.append(gains[now.get(k, k)] + gains[j])
+        now[k] = len(candidates) - 1
+    return [now.get(k, k) for k in order if k not in joined]
 
 
 def _same_place(a: Fitted, b: Fitted) -> bool:
-    if not (a.closed and b.closed) or abs(a.scale - b.scale) > SAME_PLACE * max(a.scale, b.scale):
+    if abs(a.scale - b.scale) > SAME_PLACE * max(a.scale, b.scale):
         return False
     if math.dist(a.outline.mean(axis=0), b.outline.mean(axis=0)) > SAME_PLACE * a.scale:
         return False
@@ -211,23 +228,29 @@ def _same_place(a: Fitted, b: Fitted) -> bool:
     )
 
 
-def _readings(page: Page, candidates: list[Fitted], gains: list[float], chosen: list[int]) -> list[Reading]:
+def _readings(
+    candidates: list[Fitted], gains: list[float], chosen: list[int], number: dict[int, int]
+) -> list[Reading]:
     """The chosen candidates, each with the other readings of the same ink as probabilities, in order of
-    drawing."""
-    same: dict[tuple[int, ...], list[int]] = {}
+    drawing.
+
+    number: of each piece the stroke.
+    """
+    same: dict[tuple[int, ...], list[int]] = {candidates[k].pieces: [] for k in chosen}
     for k, c in enumerate(candidates):
-        same.setdefault(c.pieces, []).append(k)
+        if c.pieces in same:
+            same[c.pieces].append(k)
     readings = []
     for k in chosen:
         c = candidates[k]
-        weight: dict[str, float] = {}
+        best: dict[str, float] = {"unread": 0.0}
         for j in same[c.pieces]:
             kind = KINDS.get(candidates[j].kind, candidates[j].kind)
-            weight[kind] = weight.get(kind, 0.0) + math.exp(min(max(gains[j] - gains[k], -50.0), 50.0))
-        weight["unread"] = math.exp(-min(gains[k], 50.0))
+            best[kind] = max(best.get(kind, -math.inf), gains[j])
+        weight = {kind: math.exp(max(gain - gains[k], -50.0)) for kind, gain in best.items()}
         total = sum(weight.values())
         kind = KINDS.get(c.kind, c.kind)
         others = sorted(((n, w / total) for n, w in weight.items() if n != kind), key=lambda t: -t[1])
-        strokes = tuple(sorted({page.pieces[i].stroke for i in c.pieces}))
+        strokes = tuple(sorted({number[i] for i in c.pieces}))
         readings.append(Reading(kind, strokes, weight[kind] / total, c.outline, others, gains[k], c.rough))
     return sorted(readings, key=lambda r: r.strokes)

@@ -38,6 +38,7 @@ class Fitted:
         cost: description length [nats].
         outline: [pixels], as in `sketch.reading.Reading`.
         scale: of a closed outline: the geometric mean of its half axes [pixels].
+        narrow: of a closed outline: the shorter of its half axes, as it was judged [pixels].
         rough: nats to say the ink, given the outline, of which a clean one takes ten or so.
         gap: of a closed outline: what is missing of it, as a share of its ink.
         figure: of a cross or an arrow: a closed polygon along all that may be drawn of it [pixels], (n, 2).
@@ -48,6 +49,7 @@ class Fitted:
     cost: float
     outline: Array
     scale: float = 0.0
+    narrow: float = 0.0
     gap: float = 0.0
     rough: float = 0.0
     figure: Array | None = None

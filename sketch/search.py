@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["best_packing"]
+__all__ = ["Solved", "best_packing"]
+
+Group = tuple[int, ...]  # of pieces of ink
 
 MOST_PIECES = 400  # in one cluster: beyond, it is shading, and the best groups are taken one after another
 MOST_LOOKS = (
@@ -12,53 +14,70 @@ MOST_LOOKS = (
 )
 
 
-def best_packing(groups: Sequence[frozenset[int]], gains: Sequence[float]) -> list[int]:
+Solved = dict[tuple[tuple[Group, ...], tuple[float, ...]], list[int]]
+
+
+def best_packing(groups: Sequence[Group], gains: Sequence[float], solved: Solved | None = None) -> list[int]:
     """Indices of pairwise disjoint groups whose gains (> 0) add up to the most.
 
     Ink that no chosen group has stays unexplained and gains nothing. Groups that share ink, however
     indirectly, form a cluster; each cluster is solved by branch and bound: take the first piece of ink
     still open, try every group that has it and leaving it out, and give up where even the best share of
     each remaining piece cannot win, or where the same pieces were settled before with no less gain.
+
+    solved: the clusters of the last packing, which are not solved again; replaced by those of this one.
     """
     chosen: list[int] = []
+    now: Solved = {}
     for cluster in _clusters(groups):
-        chosen += _solve(cluster, groups, gains)
+        its_groups = tuple(groups[g] for g in cluster)
+        its_gains = tuple(gains[g] for g in cluster)
+        key = its_groups, its_gains
+        best = solved.get(key) if solved else None
+        now[key] = best = _solve(its_groups, its_gains) if best is None else best
+        chosen += [cluster[k] for k in best]
+    if solved is not None:
+        solved.clear()
+        solved.update(now)
     return chosen
 
 
-def _clusters(groups: Sequence[frozenset[int]]) -> list[list[int]]:
+def _clusters(groups: Sequence[Group]) -> list[list[int]]:
     parent: dict[int, int] = {}
 
     def root(i: int) -> int:
-        while parent.setdefault(i, i) != i:
+        while parent[i] != i:
             parent[i] = i = parent[parent[i]]
         return i
 
-    for group in groups:
-        first, *rest = sorted(group)
-        for i in rest:
-            parent[root(i)] = root(first)
-        root(first)
-    by_root: dict[int, list[int]] = {}
+    distinct = dict.fromkeys(groups)  # one ink has several readings
+    for group in distinct:
+        first = group[0]
+        at = root(parent.setdefault(first, first))
+        for i in group[1:]:
+            parent[root(parent.setdefault(i, i))] = at
+    clusters: dict[int, list[int]] = {}
+    of = {group: clusters.setdefault(root(group[0]), []) for group in distinct}
     for g, group in enumerate(groups):
-        by_root.setdefault(root(min(group)), []).append(g)
-    return list(by_root.values())
+        of[group].append(g)
+    return list(clusters.values())
 
 
-def _greedy(cluster: list[int], groups: Sequence[frozenset[int]], gains: Sequence[float]) -> list[int]:
+def _greedy(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
     taken: set[int] = set()
     out = []
-    for g in sorted(cluster, key=lambda g: -gains[g]):
+    for g in sorted(range(len(groups)), key=lambda g: -gains[g]):
         if taken.isdisjoint(groups[g]):
-            taken |= groups[g]
+            taken.update(groups[g])
             out.append(g)
     return out
 
 
-def _solve(cluster: list[int], groups: Sequence[frozenset[int]], gains: Sequence[float]) -> list[int]:
-    bit = {i: 1 << k for k, i in enumerate(sorted({i for g in cluster for i in groups[g]}))}
+def _solve(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
+    cluster = range(len(groups))
+    bit = {i: 1 << k for k, i in enumerate(sorted({i for group in groups for i in group}))}
     if len(bit) > MOST_PIECES:
-        return _greedy(cluster, groups, gains)
+        return _greedy(groups, gains)
     every = (1 << len(bit)) - 1
     share = dict.fromkeys(bit, 0.0)  # the most that a piece can bring: a group's gain split evenly
     for g in cluster:

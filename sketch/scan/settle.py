@@ -10,15 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Set
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.context import with_context
-from sketch.ink import Sketch, Stroke
-from sketch.pieces import page_of
-from sketch.recognize import read_groups
+from sketch.context import Context
+from sketch.proposals import Proposals, proposing
 from sketch.scan.graph import Ink
 from sketch.scan.ways import Way
 from sketch.scoring import Fitted, unread
@@ -40,12 +37,14 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
     width, height: the picture's, in the pixels of the ways.
     """
     ways = likeliest + others
-    page = page_of(Sketch([Stroke(way.points) for way in ways], width, height))
-    ink = [ways[p.stroke].ink for p in page.pieces]
-    page = replace(page, rivals=_rivals([names.keys() for names in ink]))
+    ink = [way.ink for way in ways]
+    proposals = Proposals(math.hypot(width, height), _rivals([names.keys() for names in ink]))
+    proposals.add([way.points for way in ways])
+    page = proposals.page
     free: dict[int, float] = {}  # nats to say each stretch of ink freely, as strokes of the likeliest ways
     scale: dict[int, float] = {}  # [pixels] of the smallest thing that it may be part of
-    for p, stretches in zip(page.pieces, ink, strict=True):
+    for p in page.pieces.values():
+        stretches = ink[p.stroke]
         scale.update((name, min(p.scale, scale.get(name, np.inf))) for name in stretches)
         if p.stroke < len(likeliest):
             rate = unread(p) / max(sum(map(len, stretches.values())), 1)
@@ -59,10 +58,9 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         return distances[key] <= max(OFF * min(scale[name], c.scale or np.inf), pen)
 
     candidates: list[Fitted] = []
-    taken: list[frozenset[int]] = []
+    taken: list[tuple[int, ...]] = []
     gains: list[float] = []
-    groups = read_groups(page)
-    for c in groups:
+    for c in (c for proposed in proposals.all() for c in proposed.candidates):
         if not all(page.apart(i, c.pieces) for i in c.pieces):
             continue
         names: Ink = {name: points for i in c.pieces for name, points in ink[i].items()}
@@ -73,17 +71,17 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
             gain -= sum(free.get(n, 0.0) for n, points in names.items() if not explained(c, n, points))
         if gain > 0:
             candidates.append(c)
-            taken.append(frozenset(names))
+            taken.append(tuple(names))
             gains.append(gain)
     chosen: list[int] = []
-    told = gains
+    told, context, proposed = gains, Context(), proposing(candidates, gains)
     for _ in range(ROUNDS):
         live = [k for k, gain in enumerate(told) if gain > 0]
         before = chosen
         chosen = [live[k] for k in best_packing([taken[k] for k in live], [told[k] for k in live])]
         if chosen == before:
             break
-        told = with_context(candidates, gains, chosen, max(page.size, math.hypot(width, height)))
+        told = context.gains([proposed], candidates, chosen, page.size)
     return [ways[page.pieces[i].stroke] for k in chosen for i in candidates[k].pieces]
 
 

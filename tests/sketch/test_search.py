@@ -10,7 +10,7 @@ import pytest
 from sketch.search import best_packing
 
 
-def brute(groups: list[frozenset[int]], gains: list[float]) -> float:
+def brute(groups: list[tuple[int, ...]], gains: list[float]) -> float:
     best = 0.0
     for size in range(1, len(groups) + 1):
         for chosen in combinations(range(len(groups)), size):
@@ -24,7 +24,7 @@ def brute(groups: list[frozenset[int]], gains: list[float]) -> float:
 def test_no_other_set_gains_more(seed: int) -> None:
     rng = np.random.default_rng(seed)
     groups = [
-        frozenset(rng.choice(7, size=rng.integers(1, 4), replace=False).tolist())
+        tuple(rng.choice(7, size=rng.integers(1, 4), replace=False).tolist())
         for _ in range(rng.integers(1, 11))
     ]
     gains = rng.uniform(1, 50, len(groups)).tolist()

@@ -1,0 +1,251 @@
+"""What each piece of ink may be, by itself and with those around it: readings of groups, before any choice.
+
+A piece proposes the groups in which it leads: outlines of which it is drawn first, an X likewise, arrows of
+which it is the shaft. Its proposals depend on the ink around it alone, and are made anew only where that ink
+has changed; fits of the same pieces are kept.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable, Sequence, Set
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.grouping import arrow_groups, closing_chains, crosses
+from sketch.marks import read_arrow, read_bar, read_cross, with_strays
+from sketch.outlines import LEAST_AXIS, gone_over, read_outline
+from sketch.pieces import End, Looked, Page, Piece
+from sketch.scoring import Fitted, unread
+
+__all__ = ["Box", "Proposals", "Proposed", "proposing"]
+
+PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
+
+Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
+Fits = dict[Key, list[Fitted]]
+Fitting = Callable[[Key, Callable[[], list[Fitted]]], list[Fitted]]
+Box = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Alone:
+    """A piece by itself.
+
+    Attributes:
+        outlines: its readings as a closed outline; none where it is wide open.
+        complete: whether it closes by itself, and so needs no others.
+        plain: whether it looks like nothing else.
+    """
+
+    outlines: list[Fitted]
+    complete: bool
+    plain: bool
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Proposed:
+    """What one piece proposed.
+
+    Attributes:
+        candidates: readings of groups that it leads, and gains: what each saves against saying its ink freely.
+        boxes: around the outline of each [pixels], (n, 4).  box: around them all.
+        looked: what it saw of the page; seen: the box around all boxes of it.
+        fits: of which they were made.
+    """
+
+    candidates: list[Fitted]
+    gains: list[float]
+    boxes: NDArray[np.float64]
+    box: Box
+    looked: Looked
+    seen: Box
+    fits: Fits
+
+
+class Proposals:
+    """The proposals of all pieces of a page, kept as its strokes come and go."""
+
+    def __init__(self, canvas: float, rivals: Sequence[Set[int]] = ()) -> None:
+        """canvas: diagonal [pixels], or 0.  rivals: as of `Page`."""
+        self.page = Page(canvas, rivals)
+        self.by_piece: dict[int, Proposed] = {}
+        self.free: dict[int, float] = {}  # nats to say a piece freely
+        self._alone: dict[int, Alone] = {}
+        self._stale: set[int] = set()
+
+    def add(self, strokes: list[NDArray[np.float64]]) -> range:
+        """Add strokes, (n, 2) [pixels]; returns their indices."""
+        new = self.page.add(strokes)
+        self._settle([i for i in new if i in self.page.pieces])
+        return new
+
+    def remove(self, index: int) -> None:
+        """Take a stroke away."""
+        if index not in self.page.pieces:
+            return
+        self._forget(index)
+        self.page.remove(index)
+        self.by_piece.pop(index, None)
+        del self.free[index]
+        self._stale.discard(index)
+        self._settle([])
+
+    def all(self) -> list[Proposed]:
+        """What all pieces propose, in the order of drawing."""
+        page = self.page
+        if self._stale:
+            for i in sorted(self._stale):
+                known = self.by_piece.get(i)
+                self.by_piece[i] = self._propose(page.pieces[i], known.fits if known else {})
+            self._stale.clear()
+        return [self.by_piece[i] for i in page.pieces]
+
+    # ------------------------------------------------------------ what has changed
+
+    def _settle(self, new: list[int]) -> None:
+        """Take in new pieces, and what they change of the page as a whole."""
+        before = self.page.size
+        changed = self.page.settle()
+        again = {i for i in changed if i in self._alone}
+        thin = 1.001 * LEAST_AXIS * max(before, self.page.size) if before != self.page.size else 0.0
+        again |= {i for i, a in self._alone.items() if _thin(a.outlines, thin)}
+        for i in again:
+            self._forget(i)
+            self.by_piece.pop(i, None)
+        if again or thin:
+            for i, p in self.by_piece.items():
+                for key in [
+                    k for k, found in p.fits.items() if not again.isdisjoint(k[0]) or _thin(found, thin)
+                ]:
+                    del p.fits[key]
+                    self._stale.add(i)
+        for i in sorted(again.union(new)):
+            self.free[i] = unread(self.page.pieces[i])
+            self._alone[i] = self._read_alone(self.page.pieces[i])
+        for i in sorted(again.union(new)):
+            ends = set() if self._alone[i].complete else self.page.loosen(i)
+            self._touch(i, ends)
+            self._stale.add(i)
+
+    def _forget(self, index: int) -> None:
+        """Whatever was said of a piece's ink is said anew."""
+        del self._alone[index]
+        self._touch(index, self.page.tighten(index))
+
+    def _touch(self, index: int, ends: set[End]) -> None:
+        """Let those propose anew who looked where a piece comes or goes, or at these ends."""
+        x0, y0, x1, y1 = self.page.pieces[index].box
+        for i, p in self.by_piece.items():
+            if i in self._stale:
+                continue
+            a, b, c, d = p.seen
+            near = a <= x1 and b <= y1 and c >= x0 and d >= y0
+            if (
+                near and any(a <= x1 and b <= y1 and c >= x0 and d >= y0 for a, b, c, d in p.looked.boxes)
+            ) or (ends and not ends.isdisjoint(p.looked.ends)):
+                self._stale.add(i)
+
+    # ------------------------------------------------------------ readings
+
+    def _read_alone(self, p: Piece) -> Alone:
+        if p.gap >= 0.2 * p.length:
+            return Alone([], False, False)
+        outlines = read_outline(self.page, [(p.index, False)])
+        best = min(outlines, key=lambda f: f.cost)
+        loop = p.gap < 0.12 * p.length and p.scale > 0.2 * p.extent
+        complete = best.gap < 0.1 and (loop or best.cost < 0.6 * unread(p))
+        return Alone(outlines, complete, complete and best.cost < PLAIN * unread(p))
+
+    def _propose(self, p: Piece, known: Fits) -> Proposed:
+        """Every reading of every group that a piece leads."""
+        page, alone = self.page, self._alone[p.index]
+        page.looked = looked = Looked()
+        fits: Fits = {}
+
+        def fitted(key: Key, fit: Callable[[], list[Fitted]]) -> list[Fitted]:
+            found = known.get(key)
+            fits[key] = fit() if found is None else found
+            return fits[key]
+
+        out: list[Fitted] = []
+        for chain in [[(p.index, False)]] if alone.complete else closing_chains(page, p.index):
+            if len(chain) == 1 and alone.outlines:
+                found = alone.outlines
+            else:
+                key = tuple(i for i, _ in chain), tuple(back for _, back in chain)
+                found = fitted(key, partial(read_outline, page, chain))
+            out += found
+            out += _again(page, found, self.free)
+        out += _kept(read_bar(p))
+        if not alone.plain:
+            for names in crosses(page, p):
+                for cross in fitted((names, "cross"), lambda n=names: _kept(read_cross(page, n))):  # type: ignore[misc]
+                    out += [cross, *with_strays(page, cross, self.free)]
+            out += self._arrows(p, fitted)
+        gains = [sum(self.free[i] for i in c.pieces) - c.cost for c in out]
+        return proposing(out, gains, looked, fits)
+
+    def _arrows(self, p: Piece, fitted: Fitting) -> list[Fitted]:
+        """Arrows of which a piece is the shaft, the best of each group."""
+        page = self.page
+        best: dict[tuple[int, ...], Fitted] = {}
+        for names, tail, toward in arrow_groups(page, p):
+            key = names, (tail, toward)
+            for arrow in fitted(key, lambda n=names, a=tail, b=toward: _kept(read_arrow(page, n, a, b))):  # type: ignore[misc]
+                for mark in [arrow, *with_strays(page, arrow, self.free)]:
+                    if mark.pieces not in best or mark.cost < best[mark.pieces].cost:
+                        best[mark.pieces] = mark
+        return list(best.values())
+
+
+def _thin(found: list[Fitted], narrowest: float) -> bool:
+    """Whether an outline is so narrow that it depends on the page's size how it was judged."""
+    return bool(found) and 0 < found[0].narrow <= narrowest
+
+
+def proposing(
+    candidates: list[Fitted], gains: list[float], looked: Looked | None = None, fits: Fits | None = None
+) -> Proposed:
+    """Readings with their gains; looked, fits: what they depend on, and were made of."""
+    seen = Looked() if looked is None else looked
+    rows = [(*c.outline.min(axis=0).tolist(), *c.outline.max(axis=0).tolist()) for c in candidates]
+    boxes = np.array(rows, dtype=np.float64).reshape(-1, 4)
+    return Proposed(
+        candidates, gains, boxes, _around(rows), seen, _around(seen.boxes), {} if fits is None else fits
+    )
+
+
+def _kept(found: Fitted | None) -> list[Fitted]:
+    return [] if found is None else [found]
+
+
+def _again(page: Page, found: list[Fitted], free: dict[int, float]) -> list[Fitted]:
+    """The readings of an outline together with the other pieces that run along it, as drawn once more."""
+    best = min(found, key=lambda f: f.cost)
+    costs: dict[int, float] = {}
+    for p in page.within(best.outline, 0.3 * best.scale):
+        if p.index in best.pieces or not page.apart(p.index, best.pieces):
+            continue
+        cost = gone_over(page, best, p.index)
+        if cost < free[p.index]:
+            costs[p.index] = cost
+    sets = [tuple(costs)] if costs else []
+    if len(costs) > 1:
+        sets += [(j,) for j in costs]
+    return [
+        replace(f, pieces=tuple(sorted((*f.pieces, *more))), cost=f.cost + sum(costs[j] for j in more))
+        for f in found
+        for more in sets
+    ]
+
+
+def _around(boxes: list[Box]) -> Box:
+    """The box around boxes; of none one that touches nothing."""
+    if not boxes:
+        return math.inf, math.inf, -math.inf, -math.inf
+    x0, y0, x1, y1 = zip(*boxes, strict=True)
+    return min(x0), min(y0), max(x1), max(y1)
