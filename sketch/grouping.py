@@ -64,7 +64,12 @@ def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:
         return
     bar, found = _is_bar(p), []
     for q in page.touching(*p.box):
-        if q is p or q.length >= 3 * q.extent or not (bar or _is_bar(q)) or not page.apart(p.index, (q.index,)):
+        if (
+            q is p
+            or q.length >= 3 * q.extent
+            or not (bar or _is_bar(q))
+            or not page.apart(p.index, (q.index,))
+        ):
             continue
         if max(p.extent, q.extent) <= 3 * min(p.extent, q.extent):
             found.append((abs(math.log(max(p.extent, 1e-9) / max(q.extent, 1e-9))), q.index))
