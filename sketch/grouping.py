@@ -19,7 +19,7 @@ __all__ = ["arrow_groups", "closing_chains", "crosses"]
 MOST_PARTS = 6  # of one outline: people draw a box in one to five strokes
 MOST_STEPS = 400  # from one piece, of chains that may close
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
-MOST_CHAINS = 10  # from one piece that are fitted, the tightest first
+MOST_CHAINS = 16  # from one piece that are fitted, the tightest first
 HEADS = 4  # strokes near a shaft's end that are tried as its head
 
 
