@@ -23,13 +23,14 @@ __all__ = ["find_rings", "take_rings"]
 
 Points = NDArray[np.float64]
 
-SMALLEST, LARGEST = 1.4, 4.5  # pen widths: the radius of the ring that the pen's middle went along
+SMALLEST, LARGEST = 0.9, 4.5  # pen widths: the radius of the ring that the pen's middle went along
 RAYS = 48  # directions in which the belt is looked for
 DRAWN = 0.9  # the share of the rays that must meet the belt
 OUT_OF_ROUND = 0.09  # deviation from a circle, a share of its radius: a square has 0.11, a triangle 0.24
 CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to be chance
-OPEN = 0.4  # the share of the rays beyond the belt that must meet paper: a ring stands out from a scribble
+OPEN = 0.25  # the share of the rays beyond the belt that must meet paper: a ring stands out from a scribble
 CLEAR = 0.8  # and with that within the belt
+BLOT = 0.6  # one that is filled must stand out by so much, and be as round
 LEAST_ROUND = -0.4
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
@@ -112,7 +113,8 @@ def _belt(
     )
     uneven = float(np.sqrt(np.mean((along - radius) ** 2))) / radius
     roundness = 1 - uneven / OUT_OF_ROUND
-    if share < DRAWN or beyond < OPEN or within + beyond < CLEAR or roundness < LEAST_ROUND:
+    clear = within + beyond >= CLEAR or (beyond > BLOT and roundness > BLOT)
+    if share < DRAWN or beyond < OPEN or not clear or roundness < LEAST_ROUND:
         return []
     along = (np.roll(along, 1) + 2 * along + np.roll(along, -1)) / 4
     points = middle + rays * along[:, None]
@@ -168,31 +170,31 @@ def take_rings(graph: Graph, rings: list[Way], pen: float) -> tuple[Graph | None
     parts = {k: edge.ink for k, edge in enumerate(whole)}
     nodes, radius = graph.nodes, graph.radius
     taken = []
-    touched: set[int] = set()
     for ring in rings:
         middle = (ring.points.min(axis=0) + ring.points.max(axis=0)) / 2
         reach = float(np.hypot(*(ring.points - middle).T).max()) + BELT * pen
-        near = np.hypot(*(graph.nodes - middle).T) < reach if len(graph.nodes) else np.zeros(0, bool)
-        if near.any():
-            inside = set(np.flatnonzero(near).tolist())
-            touched |= inside
-            taken.append(replace(ring, ink=_take(graph, middle, reach, inside, pen, names, parts)))
+        inside = set(np.flatnonzero(np.hypot(*(graph.nodes - middle).T) < reach).tolist())
+        within = [np.hypot(*(edge.points - middle).T) < reach for edge in graph.edges]
+        crossing = [k for k, points in enumerate(within) if points.any()]
+        if not crossing or (len(crossing) == 1 and within[crossing[0]].mean() > 0.5):
+            continue  # a better ring has it all, or it stands by itself
+        taken.append(replace(ring, ink=_take(graph, middle, reach, inside, pen, names, parts)))
     if not taken:
         return None, []
+    near = _reached(whole, [edge.ink.keys() != parts[k].keys() for k, edge in enumerate(whole)])
     for k, edge in enumerate(whole):
         edge.ink = parts[k]
-    near = _reached(whole, touched)
     return Graph(nodes, radius, [edge for edge, there in zip(whole, near, strict=True) if there]), taken
 
 
-def _reached(edges: list[Edge], nodes: set[int]) -> list[bool]:
-    """Which edges hang together with some nodes."""
-    reached = set(nodes)
-    while True:
-        more = {end for edge in edges if not reached.isdisjoint(edge.ends) for end in edge.ends if end >= 0}
-        if more <= reached:
-            return [not reached.isdisjoint(edge.ends) for edge in edges]
+def _reached(edges: list[Edge], touched: list[bool]) -> list[bool]:
+    """Which edges hang together with those touched."""
+    reached: set[int] = set()
+    more = {end for edge, here in zip(edges, touched, strict=True) if here for end in edge.ends if end >= 0}
+    while not more <= reached:
         reached |= more
+        more = {end for edge in edges if not reached.isdisjoint(edge.ends) for end in edge.ends if end >= 0}
+    return [here or not reached.isdisjoint(edge.ends) for edge, here in zip(edges, touched, strict=True)]
 
 
 def _take(
