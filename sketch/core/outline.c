@@ -56,6 +56,7 @@ static const double BOW = 0.0195;   /* usual bow of a straight side, as a share 
 static const double STIFFNESS[2] = {0.02, 0.6};
 static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
 static const double REFLEX = 1.2;  /* likewise one that turns inward */
+static const double OUTER = 1.5;   /* standard deviations of a side's ink from its line to the body's edge */
 static const double INWARD = 4.0;  /* nats that a corner which turns inward is rarer */
 static const double FLATNESS = 0.096;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
@@ -118,8 +119,8 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         double off = 2.0 / 3 * side[q].bow; /* the drawn corners are the ends of the bows */
         chord[q].x -= off * side[q].dy;
         chord[q].y += off * side[q].dx;
-        /* the body reaches to the outer edge of its ink: one standard deviation beyond the line through the middle */
-        double spread = sqrt(side[q].spread2 / (cut[q + 1] - cut[q])) * outward;
+        /* the body reaches to the outer edge of its ink, beyond the line through the middle */
+        double spread = OUTER * sqrt(side[q].spread2 / (cut[q + 1] - cut[q])) * outward;
         side[q].x += spread * side[q].dy;
         side[q].y -= spread * side[q].dx;
     }
