@@ -19,7 +19,9 @@ __all__ = ["arrow_groups", "closing_chains", "crosses"]
 MOST_PARTS = 6  # of one outline: people draw a box in one to five strokes
 MOST_STEPS = 400  # from one piece, of chains that may close
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
-MOST_CHAINS = 16  # from one piece that are fitted, the tightest first
+MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
+MOST_OPEN = 4  # and of those with wide gaps, which are many in a tangle
+WIDE = 0.1  # of a chain's ink
 HEADS = 4  # strokes near a shaft's end that are tried as its head
 
 
@@ -52,7 +54,8 @@ def closing_chains(page: Page, start: int) -> list[Chain]:
 
     extend([(start, False)], 0.0, pieces[start].length)
     tightest = sorted(best.values(), key=lambda t: t[0] / t[1])
-    return [chain for _, _, chain in tightest[:MOST_CHAINS]]
+    close = sum(gaps <= WIDE * ink for gaps, ink, _ in tightest)
+    return [chain for _, _, chain in tightest[: min(max(close, MOST_OPEN), MOST_CHAINS)]]
 
 
 def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:

@@ -154,7 +154,7 @@ def with_strays(page: Page, mark: Fitted, free: Mapping[int, float]) -> list[Fit
         return []
     reach = STRAY * math.dist(mark.figure.min(axis=0), mark.figure.max(axis=0))
     costs: dict[int, float] = {}
-    for p in page.within(mark.figure, reach):
+    for p in page.along(mark.figure, reach):
         if p.index in mark.pieces or not page.apart(p.index, mark.pieces):
             continue
         off = off_outline(page.strokes, p.stroke, mark.figure)

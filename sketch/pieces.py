@@ -18,6 +18,9 @@ DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it 
 LOOSE = 0.3  # gaps of a chain, as a share of its ink, overshoots counted as gaps
 REACH = 1.5 * LOOSE  # the longest single gap, as a share of the pieces on its two sides
 CHOICES = 6  # ends that a chain may go on to
+FEW = 8  # pieces, of which each is looked at as a whole
+PLACES = (0, 16, 31, 47)  # of the samples of a stroke
+ASTRAY = 0.3  # of a piece's size: ink further off than this does not run along something
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
 Array = NDArray[np.float64]
@@ -169,6 +172,20 @@ class Page:
         b = self._boxes
         inside = (b[:, 0] >= x0) & (b[:, 1] >= y0) & (b[:, 2] <= x1) & (b[:, 3] <= y1)
         return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
+
+    def along(self, outline: Array, reach: float) -> list[Piece]:
+        """Those `within` whose ink may run along an outline; told by a few places of each, where they are many."""
+        found = self.within(outline, reach)
+        if len(found) <= FEW:
+            return found
+        corner = outline[:, 0] + 1j * outline[:, 1]
+        side = np.roll(corner, -1) - corner
+        places = self.strokes.samples[[p.stroke for p in found]][:, PLACES]
+        off = (places[..., 0] + 1j * places[..., 1])[..., None] - corner
+        off -= np.clip((off * side.conj()).real / np.maximum(np.abs(side) ** 2, 1e-9), 0, 1) * side
+        square = (np.abs(off).min(axis=2) ** 2).mean(axis=1)
+        sizes = np.array([max(p.scale, p.extent / 2) for p in found])
+        return [found[k] for k in np.flatnonzero(square < (ASTRAY * sizes) ** 2).tolist()]
 
     def touching(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:
         """The pieces whose bounding box has a point in this one."""

@@ -24,6 +24,7 @@ from sketch.scoring import Fitted, unread
 __all__ = ["Box", "Proposals", "Proposed", "proposing"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
+HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less than that for it
 
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
 Fits = dict[Key, list[Fitted]]
@@ -186,8 +187,9 @@ class Proposals:
                 for cross in fitted((names, "cross"), lambda n=names: _kept(read_cross(page, n))):  # type: ignore[misc]
                     out += [cross, *with_strays(page, cross, self.free)]
             out += self._arrows(p, fitted)
-        gains = [sum(self.free[i] for i in c.pieces) - c.cost for c in out]
-        return proposing(out, gains, looked, fits)
+        said = [(c, sum(self.free[i] for i in c.pieces) - c.cost) for c in out]
+        likely = [(c, gain) for c, gain in said if gain > -HOPELESS]
+        return proposing([c for c, _ in likely], [gain for _, gain in likely], looked, fits)
 
     def _arrows(self, p: Piece, fitted: Fitting) -> list[Fitted]:
         """Arrows of which a piece is the shaft, the best of each group."""
@@ -226,8 +228,10 @@ def _kept(found: Fitted | None) -> list[Fitted]:
 def _again(page: Page, found: list[Fitted], free: dict[int, float]) -> list[Fitted]:
     """The readings of an outline together with the other pieces that run along it, as drawn once more."""
     best = min(found, key=lambda f: f.cost)
+    if best.cost > sum(free[i] for i in best.pieces):
+        return []
     costs: dict[int, float] = {}
-    for p in page.within(best.outline, 0.3 * best.scale):
+    for p in page.along(best.outline, 0.3 * best.scale):
         if p.index in best.pieces or not page.apart(p.index, best.pieces):
             continue
         cost = gone_over(page, best, p.index)

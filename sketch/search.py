@@ -10,7 +10,7 @@ Group = tuple[int, ...]  # of pieces of ink
 
 MOST_PIECES = 400  # in one cluster: beyond, it is shading, and the best groups are taken one after another
 MOST_LOOKS = (
-    20_000  # in one cluster: shading and grids, where no set is right, end with the best found so far
+    100_000  # at groups, in one cluster: shading and grids, where no set is right, end with the best so far
 )
 
 
@@ -63,10 +63,11 @@ def _clusters(groups: Sequence[Group]) -> list[list[int]]:
     return list(clusters.values())
 
 
-def _greedy(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
+def _greedy(cluster: list[int], groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
+    """The groups of a cluster, the best first, as far as each leaves the others' ink alone."""
     taken: set[int] = set()
     out = []
-    for g in sorted(range(len(groups)), key=lambda g: -gains[g]):
+    for g in sorted(cluster, key=lambda g: -gains[g]):
         if taken.isdisjoint(groups[g]):
             taken.update(groups[g])
             out.append(g)
@@ -74,10 +75,13 @@ def _greedy(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
 
 
 def _solve(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
-    cluster = range(len(groups))
-    bit = {i: 1 << k for k, i in enumerate(sorted({i for group in groups for i in group}))}
+    best_of: dict[Group, int] = {}  # of readings of the same ink only the best can be chosen
+    for g in sorted(range(len(groups)), key=lambda g: -gains[g]):
+        best_of.setdefault(groups[g], g)
+    cluster = list(best_of.values())
+    bit = {i: 1 << k for k, i in enumerate(sorted({i for group in best_of for i in group}))}
     if len(bit) > MOST_PIECES:
-        return _greedy(groups, gains)
+        return _greedy(cluster, groups, gains)
     every = (1 << len(bit)) - 1
     share = dict.fromkeys(bit, 0.0)  # the most that a piece can bring: a group's gain split evenly
     for g in cluster:
@@ -85,7 +89,7 @@ def _solve(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
             share[i] = max(share[i], gains[g] / len(groups[g]))
     # For each piece the groups that have it, the best first: index, pieces as bits, gain, hope given up.
     choices: dict[int, list[tuple[int, int, float, float]]] = {b: [] for b in bit.values()}
-    for g in sorted(cluster, key=lambda g: -gains[g]):
+    for g in cluster:
         choice = (g, sum(bit[i] for i in groups[g]), gains[g], sum(share[i] for i in groups[g]))
         for i in groups[g]:
             choices[bit[i]].append(choice)
@@ -93,23 +97,20 @@ def _solve(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
     best, best_set = -1.0, list[int]()
     reached: dict[int, float] = {}  # by the pieces that are settled, the gain that they were settled with
     picked: list[int] = []
-
     looked = 0
 
     def branch(settled: int, gain: float, hope: float) -> None:
         nonlocal best, best_set, looked
-        looked += 1
-        if looked > MOST_LOOKS:
-            return
         if gain > best:
             best, best_set = gain, list(picked)
-        if gain + hope <= best or reached.get(settled, -1.0) >= gain:
+        if gain + hope <= best or reached.get(settled, -1.0) >= gain or looked > MOST_LOOKS:
             return
         reached[settled] = gain
         free = every & ~settled
         if not free:
             return
         first = free & -free
+        looked += len(choices[first])
         for g, pieces, its_gain, its_hope in choices[first]:
             if not settled & pieces:
                 picked.append(g)
@@ -118,4 +119,8 @@ def _solve(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
         branch(settled | first, gain, hope - share_of[first])
 
     branch(0, 0.0, sum(share.values()))
+    if looked > MOST_LOOKS:
+        greedy = _greedy(cluster, groups, gains)
+        if sum(gains[g] for g in greedy) > best:
+            return greedy
     return best_set
