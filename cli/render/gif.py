@@ -17,7 +17,7 @@ from cli.render.video import writing
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
 
-__all__ = ["write_gif"]
+__all__ = ["choose_palette", "nearest_of", "quantized", "write_gif"]
 
 Bytes = NDArray[np.uint8]
 
@@ -42,7 +42,7 @@ def write_gif(
     size = figure.pen.size
     page = Sheet(Canvas.plain(size, figure.style.paper))
     palette = choose_palette(_samples(figure, motion, page))
-    nearest = _nearest(palette)
+    nearest = nearest_of(palette)
     page.used = [page.whole]
     with writing(path), av.open(path, "w", format="gif", options={"loop": "0"}) as container:
         stream: Any = container.add_stream("gif", rate=Fraction(100))
@@ -54,7 +54,7 @@ def write_gif(
                 continue
             shown = k // every
             (bgr,) = sheet.canvas.planes
-            frame = _indexed(nearest[_coarse(bgr)], palette)
+            frame = _indexed(quantized(bgr, nearest), palette)
             frame.pts, frame.time_base = round(100 * k / fps), Fraction(1, 100)
             container.mux(stream.encode(frame))
             progress((k + 1) / count)
@@ -96,21 +96,30 @@ def choose_palette(pictures: list[Bytes]) -> Bytes:
     return filled
 
 
+def quantized(bgr: Bytes, nearest: Bytes) -> Bytes:
+    """Each pixel's colour in the palette that `nearest_of` was given."""
+    return np.asarray(nearest[_coarse(bgr)])
+
+
 def _coarse(bgr: Bytes) -> NDArray[np.uint16]:
     """Each pixel's colour to five, six and five bits."""
     b, g, r = (bgr[..., k].astype(np.uint16) for k in range(3))
     return np.asarray((b >> 3) << 11 | (g >> 2) << 5 | r >> 3)
 
 
-def _nearest(palette: Bytes) -> Bytes:
-    """For each coarse colour the palette's nearest, shape (65536,)."""
+def nearest_of(palette: Bytes) -> Bytes:
+    """For each coarse colour the palette's nearest, shape (65536,); palette: as from choose_palette."""
     code = np.arange(1 << 16)
     colors = np.stack([(code >> 11) * 8 + 4, (code >> 5 & 63) * 4 + 2, (code & 31) * 8 + 4], axis=1)
     # |a - b|² less |a|², which is the same for the whole row
     distance = np.sum(palette.astype(np.float32) ** 2, axis=1) - 2 * colors.astype(
         np.float32
     ) @ palette.T.astype(np.float32)
-    return np.asarray(np.argmin(distance, axis=1), np.uint8)
+    nearest = np.asarray(np.argmin(distance, axis=1), np.uint8)
+    # The large areas keep their very colours, whatever is nearer to the middle of their coarse ones.
+    large = np.arange(EXACT - 1, -1, -1)  # the commonest last
+    nearest[_coarse(palette[large])] = large
+    return nearest
 
 
 def _indexed(picture: Bytes, palette: Bytes) -> Any:

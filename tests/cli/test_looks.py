@@ -19,7 +19,7 @@ from cli.outputs import Outputs
 from cli.render.animation import PLAIN, Extras, drawn
 from cli.render.camera import along, fit
 from cli.render.figure import Figure
-from cli.render.gif import choose_palette
+from cli.render.gif import choose_palette, nearest_of, quantized
 from cli.render.ink import world_strokes
 from cli.render.style import BLUEPRINT, CLEAN, INK
 from cli.render.text import LETTERS, lettering
@@ -84,6 +84,16 @@ def test_palette_keeps_the_large_areas_exactly() -> None:
     assert [10, 200, 33] in palette
     assert [0, 0, 0] in palette
     assert len(palette) == 256
+
+
+def test_large_areas_of_nearly_one_colour_stay_apart() -> None:
+    """The middle of the first one's coarse colour is nearer to the second one."""
+    picture = np.full((64, 64, 3), (208, 237, 241), np.uint8)
+    picture[:20] = 211, 234, 242
+    picture[:, 60:] = np.random.default_rng(5).integers(0, 256, (64, 4, 3))
+    palette = choose_palette([picture])
+    shown = palette[quantized(picture, nearest_of(palette))]
+    assert np.array_equal(shown[:, :60], picture[:, :60])
 
 
 def test_svg_shows_every_body_where_it_is(scene: Scene, straight: Straight, tmp_path: Path) -> None:
