@@ -18,10 +18,11 @@ if TYPE_CHECKING:
     from sim.trajectory import Trajectory
     from sketch.recognize import Recognition
 
-__all__ = ["ENDINGS", "Look", "Run"]
+__all__ = ["ENDINGS", "SEEN", "Look", "Run"]
 
 DATA = {".npz": "to_npz", ".json": "to_json", ".csv": "to_csv"}
 VIDEO = (".mp4", ".webm", ".gif")
+SEEN = (*VIDEO, ".html", ".png")  # the motion as pictures
 ENDINGS = (*VIDEO, ".html", ".png", ".svg", *DATA)
 
 MAX_PIXELS = 120_000_000  # of the background that a camera following a body runs over

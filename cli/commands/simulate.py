@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cli.arguments import UsageError, add_input_options, number, picture_size, vector
-from cli.outputs import STDOUT, Outputs, check_outputs
-from cli.results import ENDINGS, Look, Run
+from cli.outputs import STDOUT, Outputs, check_outputs, ending
+from cli.results import ENDINGS, SEEN, Look, Run
 
 if TYPE_CHECKING:
     from cli.inputs import Loaded
@@ -134,7 +134,7 @@ def _simulate(source: str, targets: list[str], options: argparse.Namespace) -> N
                 result.write(files, target, partial(progress.say, f"drawing {target}"))
         if options.verbose:
             note(f"wrote {' '.join(targets)} in {time.perf_counter() - began:.3f} s")
-        if any(target.endswith((".mp4", ".webm", ".gif")) for target in targets):
+        if any(ending(target) in SEEN for target in targets):
             _tell_what_left(result.lost(), tell)
 
 
