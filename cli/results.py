@@ -11,6 +11,7 @@ from cli.arguments import UsageError
 from cli.outputs import Outputs, ending
 
 if TYPE_CHECKING:
+    from cli.render.animation import Extras
     from cli.render.camera import Camera
     from cli.render.figure import Figure
     from cli.render.ink import Ink
@@ -61,7 +62,7 @@ class Run:
         elif kind == ".html":
             from cli.render.page import page
 
-            files.write(target, page(self.fitted, self.motion, self.title, self.ink, self.followed))
+            files.write(target, page(self.fitted, self.motion, self.title, self.ink, self.extras))
         elif kind == ".svg":
             from cli.render.vector import svg
 
@@ -69,15 +70,12 @@ class Run:
         elif kind == ".png":
             from cli.render.still import png, strobe
 
-            files.write(target, png(strobe(self._still(slice(None)), self.motion)))
+            files.write(target, png(strobe(self._still(slice(None)), self.motion, self.look.trails)))
         else:
             self._write_video(files.stage(target), kind, progress)
 
     def _write_video(self, path: str, kind: str, progress: Callable[[float], None]) -> None:
-        from cli.render.animation import Extras
-
-        follow = self.followed
-        extras = Extras(self.look.trails, self.look.vectors, follow)
+        follow, extras = self.followed, self.extras
         figure = self.fitted if follow is None else self._following(follow)
         if kind == ".gif":
             from cli.render.gif import write_gif
@@ -94,6 +92,12 @@ class Run:
         if self.look.follow is None:
             return None
         return [body.id for body in self.scene.bodies].index(self.look.follow)
+
+    @property
+    def extras(self) -> Extras:
+        from cli.render.animation import Extras
+
+        return Extras(self.look.trails, self.look.vectors, self.followed)
 
     @cached_property
     def ink(self) -> Ink:

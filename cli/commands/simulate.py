@@ -134,6 +134,9 @@ def _simulate(source: str, targets: list[str], options: argparse.Namespace) -> N
                 result.write(files, target, partial(progress.say, f"drawing {target}"))
         if options.verbose:
             note(f"wrote {' '.join(targets)} in {time.perf_counter() - began:.3f} s")
+        still = [target for target in targets if ending(target) in (".png", ".svg")]
+        if options.vectors and still:
+            tell(f"{' '.join(still)}: vectors are drawn where the motion is played")
         if any(ending(target) in SEEN for target in targets):
             _tell_what_left(result.lost(), tell)
 

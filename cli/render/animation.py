@@ -18,7 +18,7 @@ from cli.render.style import mix
 if TYPE_CHECKING:
     from sim.trajectory import Trajectory
 
-__all__ = ["PLAIN", "Extras", "Sheet", "changes", "clock", "drawn", "frame_count"]
+__all__ = ["PLAIN", "Extras", "Sheet", "Trails", "changes", "clock", "drawn", "frame_count"]
 
 CHUNK = 64  # frames whose poses are computed at once: memory does not grow with the length
 VELOCITY, FORCE = (68, 119, 170), (214, 40, 57)
@@ -74,7 +74,7 @@ def drawn(
     changed = changes(figure, motion, count, extras)
     times = clock(changed, fps)
     background: Canvas | None = None
-    trails = _Trails(figure, motion) if extras.trails else None
+    trails = Trails(figure, motion) if extras.trails else None
     for start in range(0, count, CHUNK):
         span = slice(start, min(start + CHUNK, count))
         placed = figure.place(motion.positions[span], motion.angles[span])
@@ -153,7 +153,7 @@ def _windows(figure: Figure, positions: Array, extras: Extras) -> list[tuple[int
     return [(int(x), int(y)) for x, y in corners]
 
 
-class _Trails:
+class Trails:
     """The paths of the moving bodies' centres, drawn on the background as they grow."""
 
     def __init__(self, figure: Figure, motion: Trajectory) -> None:

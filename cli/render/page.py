@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from cli.render.animation import PLAIN, Extras
 from cli.render.backdrop import grid_step
 from cli.render.figure import Figure, carried
 from cli.render.ink import Ink
@@ -28,11 +29,11 @@ SCRIPTS = ("recording", "stage", "graphs", "controls")
 
 
 def page(
-    figure: Figure, motion: Trajectory, title: str, ink: Ink | None = None, follow: int | None = None
+    figure: Figure, motion: Trajectory, title: str, ink: Ink | None = None, extras: Extras = PLAIN
 ) -> bytes:
-    """The whole page as UTF-8. follow: a body that stays in the middle."""
+    """The whole page as UTF-8. extras: what is switched on at first, and what body stays in the middle."""
     # Within a script element only these two could end it or start a comment.
-    data = msgspec.json.encode(_data(figure, motion, ink or [], follow)).decode().replace("<", "\\u003c")
+    data = msgspec.json.encode(_data(figure, motion, ink or [], extras)).decode().replace("<", "\\u003c")
     parts = {
         "title": title.replace("&", "&amp;").replace("<", "&lt;"),
         "style": (PLAYER / "player.css").read_text("utf-8").strip(),
@@ -48,7 +49,7 @@ def page(
     return "".join(out).encode()
 
 
-def _data(figure: Figure, motion: Trajectory, ink: Ink, follow: int | None) -> dict[str, Any]:
+def _data(figure: Figure, motion: Trajectory, ink: Ink, extras: Extras) -> dict[str, Any]:
     scene, camera, style, bar = figure.scene, figure.camera, figure.style, figure.bar
     samples = np.concatenate(
         [motion.positions, motion.angles[..., None], motion.velocities, motion.angular_velocities[..., None]],
@@ -62,8 +63,10 @@ def _data(figure: Figure, motion: Trajectory, ink: Ink, follow: int | None) -> d
         "size": list(camera.size),
         "scale": camera.scale,
         "corner": list(camera.corner),
-        "follow": -1 if follow is None else follow,
-        "body": _farthest(motion) if follow is None else follow,
+        "follow": -1 if extras.follow is None else extras.follow,
+        "body": _farthest(motion) if extras.follow is None else extras.follow,
+        "vectors": extras.vectors,
+        "trails": extras.trails,
         "bar": {"metres": bar.metres, "label": bar.label, "at": [bar.left, bar.bottom]},
         "paper": _css(style.paper),
         "dark": _css(style.ink),

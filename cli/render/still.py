@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cli.render.animation import CHUNK
+from cli.render.animation import CHUNK, Trails
 from cli.render.annotations import round_length
 from cli.render.canvas import ONE, Canvas
 from cli.render.figure import Figure
@@ -32,12 +32,14 @@ def png(canvas: Canvas) -> bytes:
     return bytes(data)
 
 
-def strobe(figure: Figure, motion: Trajectory) -> Canvas:
+def strobe(figure: Figure, motion: Trajectory, trails: bool = False) -> Canvas:
     """All of a motion in one picture, as physics books print it: ghosts at equal times, then the end.
 
     A machine, the bodies that joints hold together, leaves no ghost where it lies nearly as in one that is there
     already: what hardly moves, or comes the same way again, would cover what it shows.  The flashes stop when the
     motion does, or when everything that moves has left the picture.
+
+    trails: whether the paths of the bodies' centres are drawn under them.
     """
     canvas = Canvas.plain(figure.camera.size, figure.style.paper)
     canvas.copy_from(figure.background)
@@ -46,6 +48,8 @@ def strobe(figure: Figure, motion: Trajectory) -> Canvas:
         figure.fill(canvas, figure.place(motion.positions[0], motion.angles[0]))
         figure.caption(canvas, "at rest")
         return canvas
+    if trails:
+        Trails(figure, motion).extend(canvas, end)
     interval = float(motion.times[1] - motion.times[0])
     step = max(1, round(round_length(end * interval / FLASHES) / interval))
     final = figure.place(motion.positions[end], motion.angles[end])

@@ -52,7 +52,7 @@ def read(data: bytes) -> Sketch:
         if not drawn:
             left[element.type] = left.get(element.type, 0) + 1
     sketch = strokes.from_objects({"strokes": [[list(p) for p in stroke] for stroke in found]})
-    sketch.notes.extend(f"left out: {count} elements of type {kind}" for kind, count in sorted(left.items()))
+    sketch.notes.extend(f"left out: {count} x {kind}" for kind, count in sorted(left.items()))
     return sketch
 
 

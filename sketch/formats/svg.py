@@ -76,7 +76,7 @@ def read(data: bytes) -> Sketch:
     page = {"width": width, "height": height} if width > 0 and height > 0 else {}
     sketch = strokes.from_objects({"strokes": found, **page})
     left = Counter(element.name for element in root.walk() if element.name in NO_INK)
-    sketch.notes.extend(f"left out: {count} elements of type {name}" for name, count in sorted(left.items()))
+    sketch.notes.extend(f"left out: {count} x {name}" for name, count in sorted(left.items()))
     return sketch
 
 

@@ -15,6 +15,7 @@ import pytest
 from numpy.typing import NDArray
 
 from cli.main import main
+from cli.render.animation import Extras
 from cli.render.annotations import scale_bar
 from cli.render.camera import about, fit
 from cli.render.canvas import Canvas
@@ -141,8 +142,18 @@ def test_stills_follow_a_body(scene_file: Path, straight: Straight, scene: Scene
 def test_the_page_shows_the_body_that_goes_farthest(scene: Scene, straight: Straight) -> None:
     figure = Figure(scene, fit(scene, (640, 480)), CLEAN)
     for follow, expected in ((None, (-1, 1)), (2, (2, 2))):
-        html = page(figure, straight(scene), "a", follow=follow).decode()
+        html = page(figure, straight(scene), "a", extras=Extras(follow=follow, vectors=True)).decode()
         found = re.search(r'type="application/json">(.*?)</script>', html, re.S)
         assert found is not None
         data = json.loads(found[1])
         assert (data["follow"], data["body"]) == expected
+        assert (data["vectors"], data["trails"]) == (True, False)
+
+
+def test_strobe_pictures_show_trails(scene: Scene, straight: Straight) -> None:
+    """A body that swings down and back up leaves a path between its ghosts."""
+    motion = straight(scene, duration=1.0, fps=20)
+    motion.positions[:, 2, 1] += np.linspace(0, -2, len(motion)) ** 2 * np.linspace(1, 0, len(motion))
+    figure = Figure(scene, fit(scene, (640, 480)), CLEAN)
+    without, with_ = (strobe(figure, motion, trails).planes[0].astype(int) for trails in (False, True))
+    assert (np.abs(with_ - without).max(axis=2) > 40).sum() > 20

@@ -77,7 +77,7 @@ def test_excalidraw() -> None:
     kinds = [r.kind for r in recognition.readings if r.kind != "gravity"]
     assert sorted(kinds) == ["circle", "polygon", "polygon", "rectangle"]
     assert recognition.scene.gravity == pytest.approx((0, -9.81), abs=0.2)
-    assert "left out: 1 elements of type text" in recognition.scene.notes
+    assert "left out: 1 x text" in recognition.scene.notes
     slope = next(b for b in recognition.scene.bodies if type(b.shape).__name__ == "Rectangle")
     assert math.remainder(slope.angle + 0.2, math.pi) == pytest.approx(0, abs=0.02)
 

@@ -91,7 +91,7 @@ def test_what_is_not_seen_is_not_read_and_what_is_no_line_is_noted() -> None:
       <path d="M20 20h50v50" fill="blue"/>"""
     sketch = load_sketch(svg(content))
     assert [s.points.tolist() for s in sketch.strokes] == [[[20, 20], [70, 20], [70, 70], [20, 20]]]
-    assert sketch.notes == ["left out: 1 elements of type image", "left out: 1 elements of type text"]
+    assert sketch.notes == ["left out: 1 x image", "left out: 1 x text"]
 
 
 def test_a_machine() -> None:

@@ -72,8 +72,8 @@ class Player {
     this.playing = false;
     this.loop = false;
     this.body = recording.body;
-    this.vectors = false;
-    this.trails = false;
+    this.vectors = recording.vectors;
+    this.trails = recording.trails;
     this.changed = () => {};
   }
 
