@@ -39,7 +39,7 @@ def strobe(figure: Figure, motion: Trajectory, trails: bool = False) -> Canvas:
     already: what hardly moves, or comes the same way again, would cover what it shows.  The flashes stop when the
     motion does, or when everything that moves has left the picture.
 
-    trails: whether the paths of the bodies' centres are drawn under them.
+    trails: whether the paths of the bodies' centres are drawn over the ghosts.
     """
     canvas = Canvas.plain(figure.camera.size, figure.style.paper)
     canvas.copy_from(figure.background)
@@ -48,8 +48,6 @@ def strobe(figure: Figure, motion: Trajectory, trails: bool = False) -> Canvas:
         figure.fill(canvas, figure.place(motion.positions[0], motion.angles[0]))
         figure.caption(canvas, "at rest")
         return canvas
-    if trails:
-        Trails(figure, motion).extend(canvas, end)
     interval = float(motion.times[1] - motion.times[0])
     step = max(1, round(round_length(end * interval / FLASHES) / interval))
     final = figure.place(motion.positions[end], motion.angles[end])
@@ -60,6 +58,8 @@ def strobe(figure: Figure, motion: Trajectory, trails: bool = False) -> Canvas:
             if all(figure.differences(placed, other)[parts].max() > apart for other in shown):
                 shown.append(placed)
                 figure.fill(canvas, placed, FADE, parts)
+    if trails:
+        Trails(figure, motion).extend(canvas, end)
     figure.fill(canvas, final)
     figure.caption(canvas, f"{step * interval:.3g} s or more apart, to {motion.times[end]:.3g} s")
     return canvas
