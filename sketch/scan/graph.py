@@ -161,9 +161,9 @@ def _drop_overshoots(graph: Graph, pen: float) -> None:
         longest = max(graph.edges[e].length for e in short)
         # one tip at a fork is a corner's; two short arms may be a small cross's, whose others are not much longer
         if min(graph.edges[e].length for e, _ in rest) > (1.2 if len(short) == 1 else 3.0) * longest:
-            gone.update(short)
             corner = _corner(graph, node, rest, pen)
             if corner is not None:
+                gone.update(short)
                 corners[node] = corner
     graph.edges = [edge for e, edge in enumerate(graph.edges) if e not in gone]
     _join_passed_nodes(graph, corners)

@@ -7,7 +7,7 @@ strokes would make can tell; so the strokes of the next best pairings are given 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -24,6 +24,7 @@ __all__ = ["Way", "Ways", "trace_strokes"]
 Points = NDArray[np.float64]
 
 DOUBT = 3.0  # [rad²] that pairings may be worse in all than the best ones, and still be looked at
+SIDE = 3.0  # pen widths: the shortest side that is borrowed from other ink
 TOGETHER = 2  # junctions that are paired otherwise at once
 MOST = 30  # combinations of pairings that are looked at
 
@@ -65,10 +66,18 @@ class Ways:
         return [self._way(course, links) for course in courses if not self._layout.is_crumb(course)]
 
     def others(self) -> list[Way]:
-        """Strokes of the next best pairings, the likelier first."""
-        seen, out = set(), []
-        for course in follow(self._graph, self._links, self._inner):
-            seen.add(_signature(course))
+        """Strokes of the next best pairings, the likelier first, each also closed over other ink where it can be."""
+        out: list[Way] = []
+        known = follow(self._graph, self._links, self._inner)
+        seen = {_signature(course) for course in known}
+        for course in known:
+            if self._layout.is_crumb(course):
+                continue
+            self._layout.borrow(course, known)
+            if course.borrowed is None:
+                out += self._closed(course, self._links)
+            else:
+                out.append(self._way(replace(course, borrowed=None), self._links))
         for choices in _combined(self._choices):
             links = dict(self._links)
             for choice in choices:
@@ -82,8 +91,15 @@ class Ways:
                     if signature in seen or self._layout.is_crumb(course):
                         continue
                     seen.add(signature)
-                    out.append(self._way(course, links))
+                    out += [self._way(course, links), *self._closed(course, links)]
         return out
+
+    def _closed(self, course: Course, links: Links) -> list[Way]:
+        """A course closed over other ink, if that is long enough to be a side."""
+        loan = self._layout.loan(course)
+        if loan is None or len(loan[0]) < SIDE * self._layout.pen:
+            return []
+        return [self._way(replace(course, borrowed=loan[0]), links)]
 
     def _way(self, course: Course, links: Links) -> Way:
         ink: Ink = {}
