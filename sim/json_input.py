@@ -46,7 +46,7 @@ def parse_json(data: bytes | str, max_bytes: int = MAX_BYTES) -> Any:
         raise InputError("", "the input is empty", kind="empty")
     try:
         return msgspec.json.decode(data)
-    except msgspec.DecodeError as e:
+    except (msgspec.DecodeError, UnicodeDecodeError) as e:
         with contextlib.suppress(ValueError, RecursionError):
             return json.loads(data)
         raise _not_json(data, e) from None
