@@ -12,14 +12,14 @@ __all__ = ["Element", "parse_xml"]
 
 MAX_BYTES = 24 << 20
 MAX_DEPTH = 200
-KEPT = ("xml:", "xlink:")  # of the attributes with a prefix
+KEPT = {"xml:id": "id", "xlink:href": "href"}  # of the attributes with a prefix
 
 
 @dataclass(eq=False)
 class Element:
     """An element, its name without the prefix of its namespace.
 
-    attributes: those without a prefix, and XML's and XLink's own without theirs.
+    attributes: those without a prefix, and xml:id and xlink:href without theirs.
 
     text: all characters directly inside.
     line: where it begins, from 1.
@@ -72,8 +72,8 @@ def parse_xml(data: bytes) -> Element:
     def start(name: str, attributes: dict[str, str]) -> None:
         if len(inside) > MAX_DEPTH:
             raise InputError(f"line {parser.CurrentLineNumber}", "elements nested too deeply", kind="format")
-        local = {key[key.find(":") + 1 :]: v for key, v in attributes.items() if key.startswith(KEPT)}
-        local |= {key: v for key, v in attributes.items() if ":" not in key}
+        local = {KEPT[key]: value for key, value in attributes.items() if key in KEPT}
+        local |= {key: value for key, value in attributes.items() if ":" not in key and key != "xmlns"}
         element = Element(name.rpartition(":")[2], local, parser.CurrentLineNumber)
         inside[-1].children.append(element)
         inside.append(element)

@@ -6,6 +6,7 @@ Styles, units, transforms and `use` are svgelements' work (extra `svg`); here st
 from __future__ import annotations
 
 import io
+import math
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -29,6 +30,7 @@ Array = NDArray[np.float64]
 NO_INK = ("text", "image", "foreignObject")  # seen, but no lines
 UNSEEN = ("clipPath", "mask", "marker", "pattern", "title", "desc", "metadata")
 
+NAME = re.compile(r"[A-Za-z][\w.-]*")  # what is left of another program's own element may be none
 NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
 LENGTH = re.compile(NUMBER + r"\s*(px|pt|pc|mm|cm|in|em|ex|ch|rem|vw|vh|%)?")
 # These two match the longest beginning that is right, and so never need to go back.
@@ -51,6 +53,8 @@ LENGTHS = {
     "ellipse": ("cx", "cy", "rx", "ry"),
     "line": ("x1", "y1", "x2", "y2"),
 }
+MAX_ELEMENTS = 100_000
+MAX_DEPTH = 400
 STEP = 3.0  # pixels between the points of a curve
 MOST = 400  # points of one curve
 
@@ -63,6 +67,7 @@ def read(data: bytes) -> Sketch:
     root = parse_xml(data)
     for element in root.walk():
         _check(element)
+    _Uses(root).count(root, 0)
     svg = _parsed(root)
     width, height = float(svg.width or 0), float(svg.height or 0)
     found: list[list[list[float]]] = []
@@ -78,6 +83,36 @@ def read(data: bytes) -> Sketch:
     left = Counter(element.name for element in root.walk() if element.name in NO_INK)
     sketch.notes.extend(f"left out: {count} x {name}" for name, count in sorted(left.items()))
     return sketch
+
+
+class _Uses:
+    """Counts what is drawn with every `use` in the place of what it stands for.
+
+    Few lines that use each other again and again would be more shapes than any page has.
+    """
+
+    def __init__(self, root: Element) -> None:
+        self.named = {e.attributes["id"]: e for e in root.walk() if "id" in e.attributes}
+        self.counts: dict[Element, int | None] = {}  # None while an element is being counted
+
+    def count(self, element: Element, depth: int) -> int:
+        if element in self.counts:
+            known = self.counts[element]
+            if known is None:
+                raise InputError(element.place, "it is used in itself")
+            return known
+        if depth > MAX_DEPTH:
+            raise InputError(element.place, "elements use each other too deeply", kind="size")
+        self.counts[element] = None
+        inside = list(element.children)
+        if element.name == "use":
+            target = self.named.get(element.attributes.get("href", "").removeprefix("#"))
+            inside += [target] if target is not None else []
+        total = 1 + sum(self.count(e, depth + 1) for e in inside)
+        if total > MAX_ELEMENTS:
+            raise InputError(element.place, f"more than {MAX_ELEMENTS} elements are used", kind="size")
+        self.counts[element] = total
+        return total
 
 
 def _parsed(root: Element) -> Any:
@@ -111,7 +146,7 @@ def _seen(element: Element) -> ET.Element:
         if child.name == "symbol":  # seen only where it is used
             node.append(defs := Node("defs"))
             defs.append(_seen(child))
-        elif child.name not in UNSEEN:
+        elif child.name not in UNSEEN and NAME.fullmatch(child.name):
             node.append(_seen(child))
     return node
 
@@ -197,15 +232,18 @@ def _points(part: Any) -> Array:
             runs.append(np.array([[segment.end.x, segment.end.y]]))
     points = np.concatenate(runs) if runs else np.zeros((0, 2))
     new = np.ones(len(points), bool)  # closing a path that is closed already adds nothing
-    new[1:] = np.hypot(*np.diff(points, axis=0).T) > 1e-6
+    with np.errstate(invalid="ignore"):  # of infinite points, which whoever reads them reports
+        new[1:] = ~(np.abs(np.diff(points, axis=0)).max(axis=1) <= 1e-6)
     return points[new]
 
 
 def _curve(segment: Any) -> Array:
     """Points of a curve after its first, about STEP apart."""
     rough = _along(segment, 17)
-    length = float(np.hypot(*np.diff(rough, axis=0).T).sum())
-    return _along(segment, int(np.clip(np.ceil(np.nan_to_num(length) / STEP), 8, MOST)) + 1)[1:]
+    if not np.isfinite(rough).all():
+        return rough[1:]  # whoever reads the points says so
+    length = min(float(np.hypot(*np.diff(rough, axis=0).T).sum()), STEP * MOST)
+    return _along(segment, max(8, math.ceil(length / STEP)) + 1)[1:]
 
 
 def _along(segment: Any, count: int) -> Array:

@@ -15,6 +15,7 @@ from sketch.formats import kind_of
 
 pytest.importorskip("svgelements")
 
+TENFOLD = '<g id="g{1}">' + '<use href="#g{0}"/>' * 10 + "</g>"
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n<!-- an <ink> of its own -->\n'
 
 
@@ -122,6 +123,16 @@ def test_a_machine() -> None:
         ),
         (b"<html><svg/></html>", "line 1 column 1", "not JSON, SVG or InkML, and no picture either"),
         (b"<svg" + b"><g" * 300, "line 1", "elements nested too deeply"),
+        (
+            svg('<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g>'),
+            "line 4: <g>",
+            "it is used in itself",
+        ),
+        (
+            svg('<path id="g0" d="M0 0 9 9"/>' + "".join(TENFOLD.format(k, k + 1) for k in range(9))),
+            "line 4: <g>",
+            "more than 100000 elements are used",
+        ),
     ],
 )
 def test_bad_files_name_the_place(data: bytes, path: str, problem: str) -> None:
