@@ -97,20 +97,6 @@ static double grazing_step(const Slack *slack, double gap, double steer) {
     return fmax(safe_step(room, 0, steer), 1e-9);
 }
 
-/* The gap's second derivative: what the bodies' accelerations do along the normal, and what comes from their velocities. */
-static double gap_acceleration(const Search *s, const Feature *f, const Gap *g, const Placed *pa, const Placed *pb,
-                               double time) {
-    double sum, along;
-    bool a_first = f->body_a == s->a.body;
-    feature_bias(f, a_first ? pa : pb, a_first ? pb : pa, &sum, &along);
-    for (int k = 0; k < 2; k++) {
-        State a = motion_acceleration(k ? s->b.motion : s->a.motion, time);
-        double part = vdot(a.v, g->normal) + a.spin * vcross(vsub(g->point, (k ? pb : pa)->at.p), g->normal);
-        sum += (k == 0) == a_first ? part : -part;
-    }
-    return sum;
-}
-
 /* How far in time one feature is safe, from its gap now: 0 when it touches. */
 static double feature_step(const Slack *slack, const Gap *g, const PairBound *bound, double steer) {
     double aside = -g->margin - slack->gap; /* how far the foot is from where a touch could be */
@@ -128,15 +114,9 @@ static double feature_step(const Slack *slack, const Gap *g, const PairBound *bo
     return fmax(step, until_margin);
 }
 
-/* How long a point takes that goes in slowly, but turns round before that can be seen. */
-static double turning_step(const Slack *slack, const Gap *g, double acceleration) {
-    bool turns = acceleration > 0 && g->rate * g->rate < 2 * acceleration * 1e-3 * slack->gap;
-    return turns ? -g->rate / acceleration : 0;
-}
-
 /* The safe step of all features of two shapes. */
 static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, const Placed *pa, const Placed *pb,
-                          const PairBound *bound, double passing, double time, double step) {
+                          const PairBound *bound, double passing, double step) {
     FeatureWalk walk = walk_features(s->world, shape_a, pa->at, shape_b, pb->at);
     for (Feature f; step > 0;) {
         double way = (1 + 1e-9) * step * bound->passing + s->slack->gap; /* what is farther cannot touch in the step */
@@ -150,8 +130,6 @@ static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, con
             f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
         double own = feature_step(s->slack, &g, bound, steer);
         const Placed *point_of = a_first ? pa : pb, *side_of = a_first ? pb : pa;
-        if (own <= 0 && g.rate >= -s->slack->speed) /* on its way in, slowly: unless it turns round at once */
-            own = turning_step(s->slack, &g, gap_acceleration(s, &f, &g, pa, pb, time));
         if (own <= 0 && !feature_faces(s->world, &f, &g, point_of, side_of, s->slack)) own = passing;
         if (own < passing && is_held(s, &f, &g, pa, pb)) own = passing;
         if (g.gap < -s->slack->gap && g.margin < -s->slack->gap) own = fmax(own, passing); /* in behind, and beside */
@@ -182,7 +160,7 @@ static double search_shapes(const Search *s, int32_t shape_a, int32_t shape_b, d
         double step = horizon - t;
         if (apart <=
             step * bound.closing) /* what passes by once mostly goes on to: longer steps, the longer it lasts */
-            step = shapes_step(s, shape_a, shape_b, &pa, &pb, &bound, PASSING * (1 + steps), t, step);
+            step = shapes_step(s, shape_a, shape_b, &pa, &pb, &bound, PASSING * (1 + steps), step);
         if (step <= 0) return t;
         if (steps > PATIENCE)
             step = fmax(step, 0.5 * s->slack->gap / bound.closing); /* creeping: half a slack at least */

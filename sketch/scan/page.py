@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import pieces
+from sketch.scan.ruling import FEWEST, drop_ruling
 
 __all__ = ["Page", "drop_specks", "fill_pinholes", "holes", "hollow_fills", "ink_mask", "read_page"]
 
@@ -33,6 +34,8 @@ CREST = 1.2  # of a line's darkness: what is next to it may be as dark
 LEAST_LINK = 3.0  # [pixels]: what is shorter and leads nowhere is a bump of an edge
 BESIDE = 0.6  # of a line's darkness: beside it the paper is brighter
 SMUDGE = 0.5  # likewise, for small pieces: a dirty finger leaves those
+RULED = 0.3  # of the picture's height or width: pieces of ruling are longer
+SQUARED = 0.7  # likewise, of height and width
 NOTABLE = 0.03  # of the picture's size: pieces smaller than this do not say how dark the ink is
 
 
@@ -126,22 +129,26 @@ def _paper(colours: Image) -> tuple[Image | None, NDArray[Any]]:
     """255 on the sheet and 0 off it, or None where the sheet fills the picture; and the light on the sheet.
 
     Light changes across a sheet, but not at once: a sheet ends where brightness falls below TABLE within
-    a few pixels.  Of the regions that such edges part, the one with the most light is the sheet; the light on
-    it, continued beyond, then tells softer edges too, and its colour tells skin and wood from shadows.
+    a few pixels, or whiteness below TINGE.  Of the regions that such edges part, the one with the most light
+    is the sheet; the light on it, continued beyond, then tells softer edges too, and its whiteness tells skin
+    and wood from shadows.
     """
     import cv2
 
     bright = _closed(_darkest_channel(colours), FINGER)
+    pale = 255 - _darkest_channel(255 - colours)
+    whiteness = bright / np.maximum(_closed(pale, FINGER), 1).astype(np.float32)
     square = np.ones((5, 5), np.uint8)
-    inner = (cv2.erode(bright, square) >= TABLE * cv2.dilate(bright, square)).astype(np.uint8)
+    lit = cv2.erode(bright, square) >= TABLE * cv2.dilate(bright, square)
+    white = cv2.erode(whiteness, square) >= TINGE * cv2.dilate(whiteness, square)
+    inner = (lit & white).astype(np.uint8)
     if inner.all():
         return None, bright
     weight = _brightest_region(inner, bright).astype(np.float32)
     around = _continued(bright, weight)
-    pale = 255 - _darkest_channel(255 - colours)
-    whiteness = bright / np.maximum(_closed(pale, FINGER), 1).astype(np.float32)
+    lit = bright >= TABLE * around
     white = whiteness >= TINGE * _continued(whiteness, weight)
-    sheet = _brightest_region(inner & white & (bright >= TABLE * around), bright)
+    sheet = _brightest_region(inner & lit & white, bright)
     # what the sheet surrounds lies on it: a filled shape, a coin, a blot
     rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)
     _, labels = cv2.connectedComponents(rest, connectivity=4)
@@ -157,7 +164,9 @@ def _continued(values: NDArray[Any], weight: NDArray[np.float32]) -> NDArray[Any
     size = (max(width // COARSER, 1), max(height // COARSER, 1))
     total, known = (cv2.resize(v, size, interpolation=cv2.INTER_AREA) for v in (weight * values, weight))
     spread = 0.12 * (size[0] * size[1]) ** 0.5
-    smooth = cv2.GaussianBlur(total, (0, 0), spread) / (cv2.GaussianBlur(known, (0, 0), spread) + 1e-3)
+    everywhere = float(total.sum()) / max(float(known.sum()), 1e-9)  # it is this far from all that has weight
+    total, known = cv2.GaussianBlur(total, (0, 0), spread), cv2.GaussianBlur(known, (0, 0), spread)
+    smooth = (total + 1e-3 * everywhere) / (known + 1e-3)
     return np.asarray(cv2.resize(smooth, (width, height), interpolation=cv2.INTER_LINEAR))
 
 
@@ -204,10 +213,20 @@ def ink_mask(page: Page, reach: int) -> Image:
     mask |= darkness > max(floor, 0.75 * full)
     _link_thin_lines(mask, darkness, max(floor, FAINT * full), reach)
     found = _measure(mask, page)
+    if _may_be_ruled(found, mask.shape) and drop_ruling(mask, darkness):
+        found = _measure(mask, page)
+        full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     held = found.at_edge & (found.span < FINGER_MARK * size)
     faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
     keep = (found.strength >= faintest) & (found.span >= 2 * reach) & ~held
     return found.without(mask, ~keep)
+
+
+def _may_be_ruled(found: _Pieces, shape: tuple[int, ...]) -> bool:
+    """Whether there are many pieces nearly as long as the sheet, as of ruling, or one all over it, as of squares."""
+    size = np.array(shape)
+    long, all_over = found.extent >= RULED * size, found.extent >= SQUARED * size
+    return bool(long.sum(axis=0).max(initial=0) >= FEWEST or all_over.all(axis=1).any())
 
 
 def _link_thin_lines(mask: Image, darkness: Image, faintest: float, reach: int) -> None:
@@ -257,13 +276,17 @@ def drop_specks(mask: Image, pen: float) -> int:
 
 @dataclass(frozen=True, eq=False)
 class _Pieces:
-    """The connected pieces of a mask, with the mean darkness, diagonal [pixels] and place of each."""
+    """The connected pieces of a mask, with the mean darkness, height and width [pixels] and place of each."""
 
     pixels: NDArray[np.int32]
     area: NDArray[np.int64]
     strength: NDArray[np.float64]
-    span: NDArray[np.float64]
+    extent: NDArray[np.int32]
     at_edge: NDArray[np.bool_]
+
+    @property
+    def span(self) -> NDArray[np.float64]:
+        return np.hypot(self.extent[:, 0], self.extent[:, 1])
 
     def without(self, mask: Image, dropped: NDArray[np.bool_]) -> Image:
         mask = mask.copy()
@@ -277,16 +300,17 @@ def _measure(mask: Image, page: Page | None) -> _Pieces:
     pixels, start = pieces(mask)
     if not len(start):
         nothing = np.zeros(0)
-        return _Pieces(pixels[:0], nothing.astype(np.int64), nothing, nothing, nothing.astype(bool))
+        none = np.zeros((0, 2), np.int32)
+        return _Pieces(pixels[:0], nothing.astype(np.int64), nothing, none, nothing.astype(bool))
     y, x = np.divmod(pixels, mask.shape[1])
     area = np.diff(np.append(start, len(pixels)))
-    span = np.hypot(*(np.maximum.reduceat(v, start) - np.minimum.reduceat(v, start) for v in (x, y)))
+    extent = np.stack([np.maximum.reduceat(v, start) - np.minimum.reduceat(v, start) for v in (y, x)], axis=1)
     strength, at_edge = np.zeros(len(start)), np.zeros(len(start), bool)
     if page is not None:
         strength = np.add.reduceat(page.darkness.ravel()[pixels].astype(np.float64), start) / area
         if page.edge is not None:
             at_edge = np.maximum.reduceat(page.edge.ravel()[pixels], start) > 0
-    return _Pieces(pixels, area, strength, span, at_edge)
+    return _Pieces(pixels, area, strength, extent, at_edge)
 
 
 def holes(mask: Image) -> list[tuple[NDArray[np.int32], int]]:

@@ -1,0 +1,148 @@
+"""Printed lines on paper: a family of straight lines, evenly spaced, from one side of the sheet to the other.
+
+Where they are as dark as the pen only their geometry tells them from a drawing.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.scan.binding import pieces
+
+__all__ = ["drop_ruling"]
+
+Image = NDArray[Any]  # uint8
+Line = NDArray[np.float64]  # y = a x² + b x + c, as polyfit gives it
+
+LONG = 0.3  # of the picture's width: what a stretch of a printed line has at least
+SHORT = 0.03  # of the picture's width: shorter stretches are crossings of other lines
+FEWEST = 5  # printed lines of which such a stretch is seen
+EVEN = 0.12  # of their distance: how far they are from even spacing
+SEEN = 0.35  # of a line's length that has to be ink, where it is only thought to be
+DARKER = 1.5  # than the printed line: ink on it
+
+
+def drop_ruling(mask: Image, darkness: Image) -> bool:
+    """Erase ruling and squares from a mask of ink, in place; returns whether there were any.
+
+    Ink that crosses a printed line stays, and so does ink on it that is clearly darker.
+    """
+    across = _drop_family(mask, darkness)
+    upright, dark = np.ascontiguousarray(mask.T), np.ascontiguousarray(darkness.T)
+    if _drop_family(upright, dark):
+        mask[...] = upright.T
+        return True
+    return across
+
+
+def _drop_family(mask: Image, darkness: Image) -> bool:
+    """Erase what is ruled from left to right."""
+    lines, thick = _long_lines(mask)
+    if len(lines) < FEWEST:
+        return False
+    family = _family(lines, mask.shape)
+    erased = 0
+    for line in family:
+        refined = _refined(line, mask, thick)
+        if refined is not None:
+            _erase(refined, mask, darkness, thick)
+            erased += 1
+    return erased >= FEWEST
+
+
+def _long_lines(mask: Image) -> tuple[list[Line], float]:
+    """The long, thin, nearly straight and nearly level stretches of ink, and how thick they are [pixels]."""
+    import cv2
+
+    width = mask.shape[1]
+    # a line a pixel thick that is not quite level still runs on within three
+    level = cv2.dilate(mask, np.ones((3, 1), np.uint8))
+    level = cv2.morphologyEx(level, cv2.MORPH_OPEN, np.ones((1, max(round(SHORT * width), 9)), np.uint8))
+    pixels, start = pieces(level & mask)
+    if not len(start):
+        return [], 0.0
+    y, x = np.divmod(pixels, width)
+    area = np.diff(np.append(start, len(pixels)))
+    wide = np.maximum.reduceat(x, start) - np.minimum.reduceat(x, start) + 1
+    lines, thickness = [], []
+    for k in np.flatnonzero(wide >= LONG * width):
+        own = slice(start[k], start[k] + area[k])
+        thick = area[k] / wide[k]
+        line = np.polyfit(x[own], y[own], 2)
+        if np.std(y[own] - np.polyval(line, x[own])) < 0.5 * thick + 0.5:
+            lines.append(line)
+            thickness.append(thick)
+    return lines, float(np.median(thickness)) if thickness else 0.0
+
+
+def _family(lines: list[Line], shape: tuple[int, ...]) -> list[Line]:
+    """All lines of the family that some belong to; none where those are not evenly spaced.
+
+    Seen at a slant their distance and slope change steadily: each is the next one's, and so on.
+    """
+    height, width = shape
+    x = np.linspace(0, width - 1, 9)
+    at = np.array(sorted((np.polyval(line, x) for line in lines), key=lambda y: float(y[4])))
+    gaps = np.diff(at[:, 4])
+    step = float(np.median(gaps))
+    if step < 6:
+        return []
+    number = np.concatenate([[0], np.cumsum(np.maximum(np.round(gaps / step), 0))])
+    apart = np.append(True, np.diff(number) > 0)
+    at, number = at[apart], number[apart]
+    if len(number) < FEWEST:
+        return []
+    mean, spread = number.mean(), max(float(np.ptp(number)), 1.0)
+    terms = np.vander((number - mean) / spread, 3)
+    for _ in range(2):  # a line of the drawing may be among them
+        shape_of, *_ = np.linalg.lstsq(terms, at, rcond=None)
+        off = np.abs(terms @ shape_of - at).max(axis=1)
+        good = off < EVEN * step
+        if np.count_nonzero(good) < max(FEWEST, 0.7 * len(number)):
+            return []
+        terms, at = terms[good], at[good]
+    first, last = -int(height / step) - 1, int(number[-1] + height / step) + 1
+    whole = np.vander((np.arange(first, last + 1) - mean) / spread, 3) @ shape_of
+    inside = (whole.max(axis=1) > 0) & (whole.min(axis=1) < height)
+    return [np.polyfit(x, y, 2) for y in whole[inside]]
+
+
+def _refined(line: Line, mask: Image, thick: float) -> Line | None:
+    """Where exactly a line of the family runs; None where there is no ink along it."""
+    height, width = mask.shape
+    reach = round(thick) + 3
+    x = np.arange(width)
+    for _ in range(2):
+        middle = np.round(np.polyval(line, x)).astype(int)
+        inside = (middle >= reach) & (middle < height - reach)
+        if not inside.any():
+            return None
+        rows = middle[inside] + np.arange(-reach, reach + 1)[:, None]
+        ink = mask[rows, x[inside]] > 0
+        count = ink.sum(axis=0)
+        alone = (count > 0) & (count <= thick + 1.5)
+        if np.count_nonzero(alone) < SEEN * len(count):
+            return None
+        y = (rows * ink).sum(axis=0)[alone] / count[alone]
+        line = np.polyfit(x[inside][alone], y, 3)
+    return np.asarray(line)
+
+
+def _erase(line: Line, mask: Image, darkness: Image, thick: float) -> None:
+    height, width = mask.shape
+    half = int(np.ceil(0.5 * thick + 1))
+    beyond = half + 1
+    x = np.arange(width)
+    middle = np.round(np.polyval(line, x)).astype(int)
+    inside = (middle >= beyond) & (middle < height - beyond)
+    x, rows = x[inside], middle[inside] + np.arange(-beyond, beyond + 1)[:, None]
+    ink = mask[rows, x] > 0
+    dark = np.where(ink, darkness[rows, x], 0).max(axis=0)
+    crossed = ink[0] | ink[-1]
+    alone = ~crossed & (dark > 0)
+    if alone.any():
+        crossed |= dark > DARKER * np.median(dark[alone])
+    mask[rows[:, ~crossed], np.broadcast_to(x[~crossed], rows[:, ~crossed].shape)] = 0
