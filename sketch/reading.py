@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Reading"]
+__all__ = ["Reading", "scored"]
+
+# How fast a reading that is ahead of its rivals becomes certain. Nats count for less than a coder's would: what is
+# not in the model (another grouping, a careless hand) errs at any margin. Fitted by maximum likelihood on 2000 shapes
+# and 6000 bodies of sketches; `sketchsim bench recognition` prints how it holds for other writers.
+STEEP = 1.3
 
 
 @dataclass(eq=False)
@@ -17,11 +24,13 @@ class Reading:
     Attributes:
         kind: "circle", "rectangle", "polygon", "bar", "anchor", "pivot", "gravity" or "unread".
         strokes: indices of the sketch's strokes that it explains.
-        score: probability of this reading among those of the same ink, 0 to 1.
+        score: probability that this is what was meant (a circle, so many sides, a mark), 0 to 1.
         outline: [pixels], y down, shape (n, 2); closed for bodies and pivots.  An anchor's is its two bars
             end to end (4 points), the arrow's is tail and head (2 points).
-        alternatives: other kinds that the same ink was scored as, with their scores, best first.
+        alternatives: what else the same ink may mean, with their scores, best first.
         gain: what the reading saves against saying the ink freely [nats].
+        margin: what it saves against the next best reading of another meaning, or against saying the ink freely
+            [nats].
         rough: nats that a polygon leaves to be said about where its ink is; a clean one leaves ten or so.
         forced: the kind that the caller said it is, or None.
     """
@@ -32,6 +41,7 @@ class Reading:
     outline: NDArray[np.float64]
     alternatives: list[tuple[str, float]] = field(default_factory=list)
     gain: float = 0.0
+    margin: float = 0.0
     rough: float = 0.0
     forced: str | None = None
 
@@ -45,3 +55,17 @@ class Reading:
         """Its strokes, as a note names them."""
         numbers = ", ".join(map(str, self.strokes))
         return f"stroke {numbers}" if len(self.strokes) == 1 else f"strokes {numbers}"
+
+
+def scored(rivals: Mapping[str, float]) -> tuple[float, list[tuple[str, float]]]:
+    """The probability of a reading, and those of its rivals, best first.
+
+    rivals: of other kinds, what each saves more than the reading [nats], mostly less than nothing.
+    """
+    margin = max(-max(rivals.values()), 0.0)
+    odds = (1 + margin) ** STEEP
+    score = odds / (1 + odds)
+    weight = {kind: math.exp(max((ahead + margin) / 4, -50.0)) for kind, ahead in rivals.items()}
+    total = sum(weight.values())
+    others = [(kind, (1 - score) * w / total) for kind, w in weight.items()]
+    return score, sorted(others, key=lambda t: -t[1])

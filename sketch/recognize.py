@@ -29,7 +29,7 @@ from sketch.kernel import depth
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page
 from sketch.proposals import Proposals, Proposed, proposing
-from sketch.reading import Reading
+from sketch.reading import Reading, scored
 from sketch.scoring import Fitted
 from sketch.search import Solved, best_packing
 
@@ -40,6 +40,7 @@ Array = NDArray[np.float64]
 SAME_PLACE = 0.2  # of a body's size: outlines nowhere further apart are one body, gone over
 KINDS = {"ellipse": "polygon", "free": "polygon", "cross": "anchor", "arrow": "gravity"}
 FORCED = 1e6  # nats that a reading gains by having been said by the caller
+MANY = 8  # sides from which on nobody counts them
 ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 
 
@@ -245,12 +246,21 @@ def _readings(
         c = candidates[k]
         best: dict[str, float] = {"unread": 0.0}
         for j in same[c.pieces]:
-            kind = KINDS.get(candidates[j].kind, candidates[j].kind)
-            best[kind] = max(best.get(kind, -math.inf), gains[j])
-        weight = {kind: math.exp(max(gain - gains[k], -50.0)) for kind, gain in best.items()}
-        total = sum(weight.values())
+            if _meaning(candidates[j]) != _meaning(c):
+                kind = KINDS.get(candidates[j].kind, candidates[j].kind)
+                best[kind] = max(best.get(kind, -math.inf), gains[j])
         kind = KINDS.get(c.kind, c.kind)
-        others = sorted(((n, w / total) for n, w in weight.items() if n != kind), key=lambda t: -t[1])
+        rivals = {name: gain - gains[k] for name, gain in best.items()}
+        score, others = scored(rivals)
         strokes = tuple(sorted({number[i] for i in c.pieces}))
-        readings.append(Reading(kind, strokes, weight[kind] / total, c.outline, others, gains[k], c.rough))
+        readings.append(
+            Reading(kind, strokes, score, c.outline, others, gains[k], -max(rivals.values()), c.rough)
+        )
     return sorted(readings, key=lambda r: r.strokes)
+
+
+def _meaning(c: Fitted) -> str | int:
+    """What a reading says: a mark, a circle, or so many sides; a rectangle is a polygon of four."""
+    if c.kind in ("rectangle", "polygon", "ellipse", "free"):
+        return min(len(c.outline), MANY)
+    return c.kind

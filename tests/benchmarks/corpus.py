@@ -46,6 +46,7 @@ MEANT = {
     "arrowhead": "gravity",
     "line": "bar",
 }
+UNLIKE = {("quickdraw", "diamond")}  # cut stones with their facets
 LONGER = 1.22  # than wide: an ellipse
 
 
@@ -71,7 +72,11 @@ def samples(folder: Path) -> Iterator[Sample]:
                     np.array([p[:2] for p in s], dtype=np.float64) for s in row["strokes"] if len(s) > 1
                 ]
                 meant = MEANT.get(row["label"])
-                if strokes and np.ptp(np.concatenate(strokes), axis=0).max() > 0 and _usable(strokes, meant):
+                if (source, row["label"]) in UNLIKE:
+                    continue
+                if meant == "round" and row["label"] in ("oval", "ellipse") and _longer(strokes) < LONGER:
+                    meant = "circle"
+                if _usable(strokes, meant):
                     user = str(row.get("user", source))
                     yield Sample(source, str(row["id"]), row["label"], user, strokes, meant)
 
@@ -87,8 +92,7 @@ def composed(folder: Path, count: int, seed: int) -> list[Drawing]:
 
 def _usable(strokes: list[Array], meant: str | None) -> bool:
     ink = np.concatenate(strokes)
-    width, height = np.maximum(np.ptp(ink, axis=0), 1e-9).tolist()
-    longer = max(width / height, height / width)
+    longer = _longer(strokes)
     if meant == "circle":
         return longer < LONGER
     if meant == "anchor":
@@ -101,6 +105,12 @@ def _usable(strokes: list[Array], meant: str | None) -> bool:
     if meant in ("3", "4", "5", "6"):
         return longer < 8 and _drawn_whole(strokes)
     return True
+
+
+def _longer(strokes: list[Array]) -> float:
+    """How many times as long as wide, or as wide as long, some ink is."""
+    width, height = np.maximum(np.ptp(np.concatenate(strokes), axis=0), 1e-9).tolist()
+    return max(width / height, height / width)
 
 
 def _straight_or_head(stroke: Array, ends: tuple[Array, Array]) -> bool:
