@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,11 +52,25 @@ def interpret(
             _anchor(reading, bodies, notes)
     pull = _gravity(readings, notes) if gravity is None else gravity
     notes += [text for d in drawn for text in _doubts(d)]
+    read = Counter(s for r in readings if r.kind != "unread" for s in r.strokes)
     left = sorted(s for r in readings if r.kind == "unread" and r.forced is None for s in r.strokes)
     if left:
-        what = Reading("unread", tuple(left), 0.0, np.empty((0, 2))).named
+        what = _strokes(s for s in left if s not in read)
+        part = _strokes(s for s in left if s in read)
+        what = " and ".join(w for w in (what, part and f"a part of {part}") if w)
         notes.append(f"left out: {what}, which fits nothing that has a meaning")
+    several = _strokes(s for s, count in read.items() if count > 1)
+    if several:
+        notes.append(
+            f"{several}: several things drawn without lifting the pen; the ways between them are left out"
+        )
     return Scene(bodies=[d.body for d in drawn], joints=joints, gravity=pull, view=view, notes=notes)
+
+
+def _strokes(numbers: Iterable[int]) -> str:
+    """Strokes as a note names them; nothing for none."""
+    strokes = tuple(numbers)
+    return Reading("unread", strokes, 0.0, np.empty((0, 2))).named if strokes else ""
 
 
 def _view(sketch: Sketch, scale: float | None) -> tuple[View, float]:

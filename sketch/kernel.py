@@ -15,6 +15,7 @@ __all__ = [
     "ArrowFit",
     "ClosedFit",
     "Strokes",
+    "cuts",
     "depth",
     "fit_arrow",
     "fit_closed",
@@ -26,7 +27,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-SAMPLES, SIDES, BENDS, LEGS = 48, 12, 6, 12  # as in core/fit.h and core/strokes.c
+SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
@@ -35,6 +36,7 @@ _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_po
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
 _arrow = ctypes.CFUNCTYPE(_int, *[_pointer] * 3, _int, *[_pointer] * 7)(("ink_arrow", _lib))
+_cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
 _off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
@@ -198,6 +200,14 @@ def fit_arrow(
     return ArrowFit(
         out[:6].reshape(3, 2), values[6:9], values[9:11], values[11:14], values[14:-1], values[-1]
     )
+
+
+def cuts(points: Array) -> tuple[list[float], list[int]]:
+    """Where a stroke, (n, 2), may go on from one thing to the next: shares of its length, 0 and 1 among them, and
+    what the parts between look like: 0 a loop, 1 a straight line, 2 a way (see core/cut.c)."""
+    shares, kinds = np.empty(PARTS + 1), np.empty(PARTS, dtype=np.int32)
+    count = _cut(points.ctypes.data, len(points), shares.ctypes.data, kinds.ctypes.data)
+    return ([0.0, 1.0], [0]) if count < 2 else (shares[: count + 1].tolist(), kinds[:count].tolist())
 
 
 def off_outline(strokes: Strokes, index: int, outline: Array) -> float:

@@ -55,17 +55,17 @@ def read_outline(page: Page, chain: Chain) -> list[Fitted]:
     if math.isfinite(fit.cost[sides]):
         cost = fit.cost[sides] + said[sides] + gaps
         out.append(Fitted("polygon", names, cost, fit.vertices(sides), scale, rough=fit.cost[sides]))
-    bent = min(misfit(fit.residual[k], count) + ARC * k for k in range(3, MOST_SIDES + 1))
-    if math.isfinite(bent):
-        course = _course(parts)
-        if is_simple(course):
-            out.append(Fitted("free", names, FREEFORM + bent + gaps, course, scale))
     box = _rectangle(fit) if math.isfinite(fit.cost[4]) else None
     if box is not None:
         corners, extra = box
         off = fit.residual[4]
         cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + BOX + gaps
         out.append(Fitted("rectangle", names, cost, corners, scale))
+    bent = FREEFORM + gaps + min(misfit(fit.residual[k], count) + ARC * k for k in range(3, MOST_SIDES + 1))
+    if bent < min(f.cost for f in out):
+        course = _course(parts)
+        if is_simple(course):
+            out.append(Fitted("free", names, bent, course, scale))
     narrow = min(math.hypot(b[0, 0], b[1, 0]), math.hypot(b[0, 1], b[1, 1]))
     return [replace(f, gap=fit.gap / fit.ink, narrow=narrow) for f in out]
 

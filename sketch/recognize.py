@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from sim.scene import InputError, Scene
 from sketch.context import Context
+from sketch.cutting import things_in
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
@@ -95,22 +96,32 @@ class Recognizer:
         self._alone: Solved = {}
         self._together: Solved = {}
         self._strokes: dict[int, Stroke] = {}
+        self._pieces: dict[int, list[int]] = {}  # of each stroke the things drawn in it: mostly one
+        self._count = 0
         if sketch.strokes:
-            keys = self._proposals.add([_thinned(s.points) for s in sketch.strokes])
-            self._strokes.update(zip(keys, sketch.strokes, strict=True))
+            self._add(sketch.strokes)
 
     def add(self, stroke: Stroke) -> int:
         """Add a stroke, drawn last; returns a key to remove it by."""
-        (key,) = self._proposals.add([_thinned(stroke.points)])
-        self._strokes[key] = stroke
-        return key
+        return self._add([stroke])[0]
+
+    def _add(self, strokes: list[Stroke]) -> range:
+        things = [things_in(_thinned(s.points)) for s in strokes]
+        new = iter(self._proposals.add([part for parts in things for part in parts]))
+        keys = range(self._count, self._count + len(strokes))
+        self._count = keys.stop
+        for key, stroke, parts in zip(keys, strokes, things, strict=True):
+            self._strokes[key] = stroke
+            self._pieces[key] = [next(new) for _ in parts]
+        return keys
 
     def remove(self, key: int) -> None:
         """Take back the stroke that `add` returned this key for; those of the first sketch have 0, 1, 2, ..."""
         if key not in self._strokes:
             raise InputError("key", f"there is no stroke {key}")
         del self._strokes[key]
-        self._proposals.remove(key)
+        for piece in self._pieces.pop(key):
+            self._proposals.remove(piece)
 
     @property
     def sketch(self) -> Sketch:
@@ -127,12 +138,14 @@ class Recognizer:
         """The page as it is now. The arguments are those of `recognize`; strokes count from 0 as they are now."""
         forced = normal_overrides(overrides, len(self._strokes))
         keys = list(self._strokes)
-        candidates, gains, chosen = self._explained({tuple(keys[s] for s in k): v for k, v in forced.items()})
+        pieces = [self._pieces[key] for key in keys]
+        said = {tuple(i for s in strokes for i in pieces[s]): kind for strokes, kind in forced.items()}
+        candidates, gains, chosen = self._explained(said)
         sketch = self.sketch
-        readings = _readings(candidates, gains, chosen, {key: s for s, key in enumerate(keys)})
-        read = {s for r in readings for s in r.strokes}
+        readings = _readings(candidates, gains, chosen, {i: s for s, of in enumerate(pieces) for i in of})
+        read = {i for k in chosen for i in candidates[k].pieces}
         for i, stroke in enumerate(sketch.strokes):
-            if i not in read:
+            if not read.issuperset(pieces[i]):
                 readings.append(Reading("unread", (i,), 0.0, stroke.points))
         for reading in readings:
             reading.forced = forced.get(reading.strokes)

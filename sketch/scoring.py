@@ -61,8 +61,13 @@ class Fitted:
 
 def unread(piece: Piece) -> float:
     """Nats to say a piece's ink freely: point by point, or as the polyline that says it in fewest."""
-    legs = (2 * (k + 1) * PARAMETER + misfit_of(piece, r) for k, r in enumerate(piece.residual) if k)
-    return STRANGE + min(FREE * piece.observations, *legs)
+    best = FREE * piece.observations
+    for k in range(1, len(piece.residual)):
+        said = 2 * (k + 1) * PARAMETER
+        if said >= best:
+            break
+        best = min(best, said + misfit_of(piece, piece.residual[k]))
+    return STRANGE + best
 
 
 def misfit(mean_square: float, count: float) -> float:

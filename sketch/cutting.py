@@ -1,0 +1,64 @@
+"""A stroke in which the pen went on from one thing to the next without being lifted, as those things."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.grouping import arrow_groups
+from sketch.kernel import cuts
+from sketch.marks import read_arrow, read_bar, read_cross
+from sketch.outlines import read_outline
+from sketch.pieces import Page, Piece
+from sketch.scoring import unread
+
+__all__ = ["things_in"]
+
+Array = NDArray[np.float64]
+
+WAY = 2  # as in core/cut.c: from one thing to the next
+CUT = 10.0  # nats that going on to another thing, or on the way to it, is rarer than lifting the pen
+OPEN = 0.2  # of its length: a stroke whose ends are further apart is no outline
+
+
+def things_in(points: Array) -> list[Array]:
+    """The parts of a stroke, (n, 2) [pixels], that were drawn as things of their own; mostly itself alone.
+
+    It is cut where that says its ink in fewer nats than any reading of the whole. The ways between the parts
+    are in none of them.
+    """
+    if len(points) < 2:
+        return [points]
+    points = np.ascontiguousarray(points)
+    shares, kinds = cuts(points)
+    if len(kinds) < 2:
+        return [points]
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    at = np.searchsorted(along, np.array(shares) * along[-1])
+    parts = [points[a : b + 1] for a, b, kind in zip(at, at[1:], kinds, strict=False) if kind != WAY]
+    page = Page()
+    page.add([points, *parts])
+    page.settle()
+    if len(parts) < 2 or len(page.pieces) <= len(parts):
+        return [points]
+    whole, *things = page.pieces.values()
+    said = sum(_nats(page, p) for p in things) + CUT * (len(kinds) - 1)
+    # the whole is to be said as finely as its parts: with their number of observations, and to their precision
+    count = sum(p.observations for p in things)
+    scale = sum(p.scale * p.observations for p in things) / count
+    coarse = whole.observations * max(math.log(whole.scale / scale), 0.0)
+    meant = max(count / whole.observations, 1.0) * _nats(page, whole, free=False) + coarse
+    free = unread(replace(whole, scale=min(scale, whole.scale), observations=count))
+    return parts if said < min(free, meant) else [points]
+
+
+def _nats(page: Page, p: Piece, *, free: bool = True) -> float:
+    """The fewest nats to say a piece by itself, as something that has a meaning or freely."""
+    found = [read_bar(p), read_cross(page, (p.index,))]
+    if p.gap < OPEN * p.length:
+        found += read_outline(page, [(p.index, False)])
+    found += [read_arrow(page, *group) for group in arrow_groups(page, p) if group[0] == (p.index,)]
+    return min((unread(p) if free else math.inf, *(f.cost for f in found if f is not None)))
