@@ -55,7 +55,8 @@ def closing_chains(page: Page, start: int) -> list[Chain]:
     extend([(start, False)], 0.0, pieces[start].length)
     tightest = sorted(best.values(), key=lambda t: t[0] / t[1])
     close = sum(gaps <= WIDE * ink for gaps, ink, _ in tightest)
-    return [chain for _, _, chain in tightest[: min(max(close, MOST_OPEN), MOST_CHAINS)]]
+    wide = MOST_CHAINS if page.rivals else MOST_OPEN
+    return [chain for _, _, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]
 
 
 def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:

@@ -328,16 +328,20 @@ def holes(mask: Image) -> list[tuple[NDArray[np.int32], int]]:
     ]
 
 
-def hollow_fills(mask: Image, pen: float) -> None:
-    """Leave of filled shapes, in place, the outline that a pen `pen` pixels wide would draw."""
+def hollow_fills(mask: Image, distance: NDArray[Any], pen: float) -> bool:
+    """Leave of filled shapes, in place, the outline that a pen `pen` pixels wide would draw; whether there are any.
+
+    distance: each ink pixel's distance to the paper, shape (h, w).
+    """
     import cv2
 
-    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
-    core = (distance > FILL * pen).astype(np.uint8)
-    if core.any():
-        reach = 2 * round(FILL * pen) + 1
-        fills = cv2.dilate(core, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach)))
-        mask[(fills > 0) & (distance > pen)] = 0
+    core = cv2.compare(distance, FILL * pen, cv2.CMP_GT) & mask
+    if not core.any():
+        return False
+    reach = 2 * round(FILL * pen) + 1
+    fills = cv2.dilate(core, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach)))
+    mask[(fills > 0) & (distance > pen)] = 0
+    return True
 
 
 def fill_pinholes(mask: Image, pen: float) -> bool:
