@@ -27,6 +27,8 @@ Points = NDArray[np.float64]
 
 ROUNDS = 4  # of choosing, each with what the readings chosen before say about those around them
 OFF = 0.4  # of the scale of what it may belong to: ink further off than this is not explained
+SAMPLES = 8  # or a few more points of a stretch that are compared with what was fitted
+TO_COMPLEX = np.array([1, 1j])
 STRAIN = 4.0  # nats for each square radian that the pen turned at junctions
 
 
@@ -49,14 +51,7 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         if p.stroke < len(likeliest):
             rate = unread(p) / max(sum(map(len, stretches.values())), 1)
             free.update((name, rate * len(points)) for name, points in stretches.items())
-    distances: dict[tuple[int, int], float] = {}
-
-    def explained(c: Fitted, name: int, points: Points) -> bool:
-        key = id(c.outline), name
-        if key not in distances:
-            distances[key] = _off(c, points)
-        return distances[key] <= max(OFF * min(scale[name], c.scale or np.inf), pen)
-
+    some = {name: points[:: len(points) // SAMPLES + 1] for names in ink for name, points in names.items()}
     candidates: list[Fitted] = []
     taken: list[tuple[int, ...]] = []
     gains: list[float] = []
@@ -68,33 +63,43 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         strain = sum(ways[page.pieces[i].stroke].strain for i in c.pieces)
         gain = (1 - c.cost / own) * sum(free.get(name, 0.0) for name in names) - STRAIN * strain
         if gain > 0 and c.kind != "cross":
-            gain -= sum(free.get(n, 0.0) for n, points in names.items() if not explained(c, n, points))
+            near = [max(OFF * min(scale[name], c.scale or np.inf), pen) for name in names]
+            off = _off(c, [some[name] for name in names]) > near
+            gain -= sum(free.get(name, 0.0) for name, far in zip(names, off.tolist(), strict=True) if far)
         if gain > 0:
             candidates.append(c)
             taken.append(tuple(names))
             gains.append(gain)
-    chosen: list[int] = []
     told, context, proposed = gains, Context(), proposing(candidates, gains)
+    best, most = list[int](), -np.inf
+    tried: set[frozenset[int]] = set()
     for _ in range(ROUNDS):
         live = [k for k, gain in enumerate(told) if gain > 0]
-        before = chosen
         chosen = [live[k] for k in best_packing([taken[k] for k in live], [told[k] for k in live])]
-        if chosen == before:
+        if frozenset(chosen) in tried:
             break
+        tried.add(frozenset(chosen))
         told = context.gains([proposed], candidates, chosen, page.size)
-    return [ways[page.pieces[i].stroke] for k in chosen for i in candidates[k].pieces]
+        if (total := sum(told[k] for k in chosen)) > most:  # as they stand around one another
+            best, most = chosen, total
+    return [ways[page.pieces[i].stroke] for k in best for i in candidates[k].pieces]
 
 
-def _off(fitted: Fitted, points: Points) -> float:
-    """The root mean square distance of some ink from what was fitted [pixels]."""
+def _off(fitted: Fitted, stretches: list[Points]) -> Points:
+    """The root mean square distance of each stretch of ink from what was fitted [pixels]."""
     line = fitted.outline if fitted.figure is None else fitted.figure
     if fitted.closed or fitted.figure is not None:
         line = np.concatenate([line, line[:1]])
-    some = points[:: max(len(points) // 16, 1), None]
-    start, side = line[:-1], np.diff(line, axis=0)
-    along = ((some - start) * side).sum(axis=2) / np.maximum((side * side).sum(axis=1), 1e-9)
-    off = some - start - np.clip(along, 0, 1)[..., None] * side
-    return float(np.sqrt(np.mean((off * off).sum(axis=2).min(axis=1))))
+    counts = [len(points) for points in stretches]
+    z = np.concatenate(stretches) @ TO_COMPLEX
+    corners = line @ TO_COMPLEX
+    side = corners[1:] - corners[:-1]
+    side[side == 0] = 1e-9
+    across = (z[:, None] - corners[:-1]) / side  # each side lies from 0 to 1
+    off = np.abs(across - np.clip(across.real, 0, 1)) * np.abs(side)
+    square = off.min(axis=1) ** 2
+    starts = np.cumsum([0, *counts[:-1]])
+    return np.asarray(np.sqrt(np.add.reduceat(square, starts) / counts))
 
 
 def _rivals(ink: list[Set[int]]) -> list[set[int]]:

@@ -38,8 +38,8 @@ class Traced:
     Attributes:
         strokes: each shape (n, 2) [pixels of the picture].
         scale: picture pixels to a pixel of the stages' pictures.
-        page: darkness under even light.  mask: ink 1, paper 0.  skeleton: its lines.  All None where the
-            picture is too small to show anything.
+        page: darkness under even light.  mask: ink 1, paper 0.  skeleton: its lines.  distance: of the ink to the
+            paper.  All None where the picture is too small to show anything.
         pen: width of the pen [pixels of the stages' pictures].
         specks: how many pieces were too small to be anything.
     """
@@ -49,6 +49,7 @@ class Traced:
     page: Page | None = None
     mask: NDArray[Any] | None = None
     skeleton: NDArray[Any] | None = None
+    distance: NDArray[Any] | None = None
     pen: float = 0.0
     specks: int = 0
 
@@ -84,15 +85,14 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
     page = read_page(work)
     mask = ink_mask(page, NEARBY)
     skeleton, count = thin(mask)
-    pen = _pen_width(mask, skeleton) if count else 0.0
-    return Traced([], scale, page, mask, skeleton, pen)
+    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    pen = _pen_width(mask, skeleton, distance) if count else 0.0
+    return Traced([], scale, page, mask, skeleton, distance, pen)
 
 
-def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any]) -> float:
+def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any]) -> float:
     """The width of the pen: the ink's area over its length, unless filled shapes are among it."""
-    import cv2
-
-    thickness = 2 * cv2.distanceTransform(mask, cv2.DIST_L2, 3)[skeleton > 0]
+    thickness = 2 * distance[skeleton > 0]
     thin_ink, thick_ink = np.percentile(thickness, [20, 80])
     if thick_ink > 2.5 * thin_ink:
         return float(min(thin_ink, WIDEST_PEN))
@@ -102,15 +102,19 @@ def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any]) -> float:
 def _strokes(seen: Traced) -> list[Points]:
     import cv2
 
-    page, mask, pen = seen.page, seen.mask, seen.pen
-    if page is None or mask is None:
+    page, mask, skeleton, distance, pen = seen.page, seen.mask, seen.skeleton, seen.distance, seen.pen
+    if page is None or mask is None or skeleton is None or distance is None:
         return []
     seen.specks = drop_specks(mask, pen)
-    hollow_fills(mask, pen)
-    fill_pinholes(mask, pen)
-    seen.skeleton, count = thin(mask)
-    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
-    graph = build_graph(trace(seen.skeleton, count), distance, pen)
+    hollowed = hollow_fills(mask, distance, pen)
+    if fill_pinholes(mask, pen) or hollowed:
+        skeleton, count = thin(mask)
+        distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    else:
+        skeleton &= mask
+        count = cv2.countNonZero(skeleton)
+    seen.skeleton, seen.distance = skeleton, distance
+    graph = build_graph(trace(skeleton, count), distance, pen)
     centre_on_ink(graph, page.darkness, pen)
     sharpen_corners(graph, distance, pen)
     found = find_rings(mask, distance, pen)
