@@ -335,7 +335,7 @@ def hollow_fills(mask: Image, distance: NDArray[Any], pen: float) -> bool:
     """
     import cv2
 
-    core = cv2.compare(distance, FILL * pen, cv2.CMP_GT) & mask
+    core = (distance > FILL * pen).astype(np.uint8)
     if not core.any():
         return False
     reach = 2 * round(FILL * pen) + 1
