@@ -1,5 +1,6 @@
 """The process of one command: `python -m cli`, and the installed `sketchsim`."""
 
+import contextlib
 import gc
 import os
 import sys
@@ -16,19 +17,28 @@ def entry() -> NoReturn:
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(100_000, 20, 20)
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:  # whoever started this closed it
+            setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
     try:
         from cli.main import main
 
         status = main()
     except KeyboardInterrupt:  # while that is loaded; afterwards it answers for itself
-        print("error: interrupted; nothing was left half-written [interrupted]", file=sys.stderr)
-        status = 130
-    for stream in (sys.stdout, sys.stderr):
-        try:
-            stream.flush()
-        except (OSError, ValueError):
-            status = status or 1
+        status = _say("interrupted; nothing was left half-written [interrupted]", 130)
+    try:
+        sys.stdout.flush()
+    except OSError as e:
+        status = status or _say(f"standard output: {os.strerror(e.errno or 0).lower()} [write]", 1)
+    with contextlib.suppress(OSError):
+        sys.stderr.flush()
     os._exit(status)
+
+
+def _say(problem: str, status: int) -> int:
+    with contextlib.suppress(OSError):
+        print(f"error: {problem}", file=sys.stderr)
+    return status
 
 
 if __name__ == "__main__":

@@ -114,3 +114,29 @@ def test_a_disk_that_is_full_is_told_and_nothing_is_left(scene_file: Path, endin
     assert run.returncode == 1
     assert run.stderr.splitlines()[-1] == f"error: {out}: file too large [write]"
     assert os.listdir(scene_file.parent) == ["scene.json"]
+
+
+@pytest.mark.parametrize(
+    ("closed", "argv", "status"),
+    [
+        ("0<&-", "simulate - -o -", 3),
+        ("1>&-", "--version", 0),
+        ("2>&-", "simulate {scene} -o {folder}/a.json", 0),
+        ("2>&-", "simulate {scene} -o {folder}/a.avi", 2),
+        ("1>/dev/full", "completion bash", 1),
+        ("1>/dev/full", "simulate {scene} -o -", 1),
+    ],
+)
+def test_streams_that_are_closed_or_full(scene_file: Path, closed: str, argv: str, status: int) -> None:
+    words = argv.format(scene=scene_file, folder=scene_file.parent)
+    run = subprocess.run(
+        ["sh", "-c", f"exec {sys.executable} -m cli {words} {closed}"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == status
+    assert "Traceback" not in run.stderr
+    assert len(run.stderr.splitlines()) <= 2
+    if status and closed[0] != "2":
+        assert run.stderr.startswith("error: ")
