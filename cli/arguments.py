@@ -149,3 +149,7 @@ def add_input_options(p: argparse.ArgumentParser) -> None:
         "--index", type=whole_number(0, 999_999_999), metavar="K",
         help="which drawing of a file with many (Quick, Draw!), from 0; the first without it",
     )  # fmt: skip
+    p.add_argument(
+        "--tidy", action="store_true",
+        help="near-level sides level, near-equal wheels equal, what nearly touches touching",
+    )  # fmt: skip

@@ -28,19 +28,22 @@ class Way:
     """How a drawing is to be read.
 
     scale: the ink's pixels per metre.  readings: what some strokes are, by their numbers.  page: of a PDF, from
-    1.  index: of a file with many drawings, from 0.  stages: a folder for pictures of what was seen on a picture.
+    1.  index: of a file with many drawings, from 0.  tidy: whether to undo what the hand did to level sides, equal
+    wheels, touching bodies.  stages: a folder for pictures of what was seen on a picture.
     """
 
     scale: float | None = None
     readings: Sequence[tuple[tuple[int, ...], str]] = ()
     page: int = 1
     index: int | None = None
+    tidy: bool = False
     stages: str | None = None
 
     @classmethod
     def of(cls, options: argparse.Namespace) -> Way:
         """From the options of add_input_options."""
-        return cls(options.scale, options.read, options.page, options.index, getattr(options, "stages", None))
+        stages = getattr(options, "stages", None)
+        return cls(options.scale, options.read, options.page, options.index, options.tidy, stages)
 
 
 @dataclass(frozen=True)
@@ -87,6 +90,8 @@ def load_bytes(data: bytes, source: str, way: Way) -> Loaded:
             )
         if way.readings:
             raise UsageError(f"--read: {source} is a scene, without strokes", "edit the scene itself")
+        if way.tidy:
+            raise UsageError(f"--tidy: {source} is a scene, not a drawing", "edit the scene itself")
         if way.page != 1 or way.index:
             raise UsageError(f"--page, --index: {source} is a scene, there are no others in it")
         return Loaded(Scene.from_json(data))
@@ -126,7 +131,7 @@ def recognize_bytes(data: bytes, way: Way) -> Recognition:
     if way.scale is not None:
         sketch = dataclasses.replace(sketch, pixels_per_metre=way.scale)
     try:
-        return recognize(sketch, overrides=dict(way.readings))
+        return recognize(sketch, overrides=dict(way.readings), tidy=way.tidy)
     except InputError as e:
         if e.path.startswith("overrides["):  # what the command calls --read
             raise UsageError(f"--read {e.path[10:-1]}: {e.problem}", e.hint) from None

@@ -51,6 +51,18 @@ def _why(reading: Reading) -> str:
         return f"because it was said to be: {reading.forced}"
     if reading.kind == "unread":
         return "because no shape says where the ink is in fewer words than the ink itself"
-    text = f"{reading.score:.0%} sure; saves {reading.gain:.0f} nats against saying the ink point by point"
-    rivals = [f"{kind} {score:.1%}" for kind, score in reading.alternatives if score >= 0.0005]
-    return text + (f"; next: {', '.join(rivals[:2])}" if rivals else "; nothing else comes near")
+    text = f"{_percent(reading.score)} sure: says the ink in {reading.gain:.0f} nats less than point by point"
+    if reading.error:
+        text += f", to within {reading.error:.1f} pixels"
+    rivals = [f"{_rival(kind)} {_percent(score)}" for kind, score in reading.alternatives if score >= 0.001]
+    if not rivals:
+        return text + "; nothing else comes near"
+    return text + f", {reading.margin:.0f} less than the next; else: {', '.join(rivals[:2])}"
+
+
+def _rival(kind: str) -> str:
+    return {"unread": "no meaning", "gravity": "the arrow", "anchor": "an X"}.get(kind, f"a {kind}")
+
+
+def _percent(share: float) -> str:
+    return f"{share:.1%}" if share > 0.99 or share < 0.01 else f"{share:.0%}"

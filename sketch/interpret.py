@@ -13,6 +13,7 @@ from sim.scene import Joint, Scene, View
 from sketch.bodies import Bodies, Drawn, draw_body, touch
 from sketch.ink import Sketch
 from sketch.reading import Reading
+from sketch.tidy import close_gaps, straighten
 
 __all__ = ["interpret"]
 
@@ -31,13 +32,18 @@ UNSURE = 0.2  # a reading with a rival of this probability is named in the notes
 
 
 def interpret(
-    sketch: Sketch, readings: list[Reading], scale: float | None, gravity: tuple[float, float] | None
+    sketch: Sketch,
+    readings: list[Reading],
+    scale: float | None,
+    gravity: tuple[float, float] | None,
+    tidy: bool = False,
 ) -> Scene:
     """The scene that readings make; a small circle that is a pivot becomes one in `readings`.
 
     scale: [pixels per metre], or None for the sketch's own.  gravity: [m/s²], y up, or None for the arrow's.
+    tidy: whether to undo what the hand did to level sides, equal wheels and touching bodies.
     """
-    notes = list(sketch.notes)
+    notes = list(sketch.notes) + (straighten(readings) if tidy else [])
     view, longer = _view(sketch, scale)
     drawn = [
         draw_body(r, k, view.pixels_per_metre, PEN * longer)
@@ -51,6 +57,8 @@ def interpret(
         if reading.kind == "anchor":
             _anchor(reading, bodies, notes)
     pull = _gravity(readings, notes) if gravity is None else gravity
+    if tidy:
+        notes += close_gaps(drawn, joints, pull, view.pixels_per_metre)
     notes += [text for d in drawn for text in _doubts(d)]
     read = Counter(s for r in readings if r.kind != "unread" for s in r.strokes)
     left = sorted(s for r in readings if r.kind == "unread" and r.forced is None for s in r.strokes)

@@ -32,6 +32,7 @@ class Reading:
         margin: what it saves against the next best reading of another meaning, or against saying the ink freely
             [nats].
         rough: nats that a polygon leaves to be said about where its ink is; a clean one leaves ten or so.
+        error: standard error of a body's corners, or of its centre and radius [pixels]; 0 for marks.
         forced: the kind that the caller said it is, or None.
     """
 
@@ -43,6 +44,7 @@ class Reading:
     gain: float = 0.0
     margin: float = 0.0
     rough: float = 0.0
+    error: float = 0.0
     forced: str | None = None
 
     @property

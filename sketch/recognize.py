@@ -26,7 +26,7 @@ from sketch.cutting import things_in
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
-from sketch.kernel import depth
+from sketch.kernel import depth, off_outline
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page
 from sketch.proposals import Proposals, Proposed, proposing
@@ -64,6 +64,7 @@ def recognize(
     scale: float | None = None,
     gravity: tuple[float, float] | None = None,
     overrides: Mapping[int | tuple[int, ...], str] | None = None,
+    tidy: bool = False,
 ) -> Recognition:
     """Read a sketch.
 
@@ -73,8 +74,9 @@ def recognize(
         gravity: [m/s²], y up, overriding the arrow's.
         overrides: what some strokes are, as ``{(3, 4): "anchor", 7: "ball", 9: "ignore"}``: one of
             `sketch.overrides.KINDS`; the rest is read around them.
+        tidy: whether to make near-level sides level, near-equal wheels equal, and what nearly touches touch.
     """
-    return Recognizer(sketch).recognition(scale=scale, gravity=gravity, overrides=overrides)
+    return Recognizer(sketch).recognition(scale=scale, gravity=gravity, overrides=overrides, tidy=tidy)
 
 
 class Recognizer:
@@ -134,6 +136,7 @@ class Recognizer:
         scale: float | None = None,
         gravity: tuple[float, float] | None = None,
         overrides: Mapping[int | tuple[int, ...], str] | None = None,
+        tidy: bool = False,
     ) -> Recognition:
         """The page as it is now. The arguments are those of `recognize`; strokes count from 0 as they are now."""
         forced = normal_overrides(overrides, len(self._strokes))
@@ -142,7 +145,8 @@ class Recognizer:
         said = {tuple(i for s in strokes for i in pieces[s]): kind for strokes, kind in forced.items()}
         candidates, gains, chosen = self._explained(said)
         sketch = self.sketch
-        readings = _readings(candidates, gains, chosen, {i: s for s, of in enumerate(pieces) for i in of})
+        number = {i: s for s, of in enumerate(pieces) for i in of}
+        readings = _readings(self._proposals.page, candidates, gains, chosen, number)
         read = {i for k in chosen for i in candidates[k].pieces}
         for i, stroke in enumerate(sketch.strokes):
             if not read.issuperset(pieces[i]):
@@ -153,7 +157,7 @@ class Recognizer:
             for reading in readings:
                 if kind == "ignore" and reading.kind == "unread" and reading.strokes[0] in strokes:
                     reading.forced = kind
-        return Recognition(sketch, interpret(sketch, readings, scale, gravity), readings)
+        return Recognition(sketch, interpret(sketch, readings, scale, gravity, tidy), readings)
 
     def _explained(self, forced: Overrides) -> tuple[list[Fitted], list[float], list[int]]:
         """All candidates with their gains, and which of them explain the page best."""
@@ -243,7 +247,7 @@ def _same_place(a: Fitted, b: Fitted) -> bool:
 
 
 def _readings(
-    candidates: list[Fitted], gains: list[float], chosen: list[int], number: dict[int, int]
+    page: Page, candidates: list[Fitted], gains: list[float], chosen: list[int], number: dict[int, int]
 ) -> list[Reading]:
     """The chosen candidates, each with the other readings of the same ink as probabilities, in order of
     drawing.
@@ -267,7 +271,17 @@ def _readings(
         score, others = scored(rivals)
         strokes = tuple(sorted({number[i] for i in c.pieces}))
         readings.append(
-            Reading(kind, strokes, score, c.outline, others, gains[k], -max(rivals.values()), c.rough)
+            Reading(
+                kind,
+                strokes,
+                score,
+                c.outline,
+                others,
+                gains[k],
+                -max(rivals.values()),
+                c.rough,
+                _error(page, c),
+            )
         )
     return sorted(readings, key=lambda r: r.strokes)
 
@@ -277,3 +291,25 @@ def _meaning(c: Fitted) -> str | int:
     if c.kind in ("rectangle", "polygon", "ellipse", "free"):
         return min(len(c.outline), MANY)
     return c.kind
+
+
+def _error(page: Page, c: Fitted) -> float:
+    """The standard error of a fit's corners, or of its centre and radius [pixels].
+
+    The root mean square distance of the ink, times the square root of parameters over independent observations.
+    """
+    if not (c.closed or c.kind == "bar"):
+        return 0.0
+    pieces = [page.pieces[i] for i in c.pieces]
+    length = sum(p.length for p in pieces)
+    if c.kind == "bar":
+        square = pieces[0].residual[len(c.outline) - 1]
+    elif c.kind == "circle":
+        middle = c.outline.mean(axis=0)
+        radius = math.dist(c.outline[0], middle)
+        off = [np.hypot(*(page.strokes.samples[p.stroke] - middle).T) - radius for p in pieces]
+        square = sum(p.length * float(np.mean(d * d)) for p, d in zip(pieces, off, strict=True)) / length
+    else:
+        square = sum(p.length * off_outline(page.strokes, p.stroke, c.outline) for p in pieces) / length
+    parameters = {"circle": 3, "ellipse": 5, "rectangle": 5}.get(c.kind, 2 * len(c.outline))
+    return math.sqrt(square * parameters / max(sum(p.observations for p in pieces), parameters))
