@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import InputError
-from sketch.formats import arrows, strokes
+from sketch.formats import arrows, brush, strokes
 from sketch.formats.markup import Element, parse_xml
 from sketch.ink import Sketch
 
@@ -73,7 +73,7 @@ def read(data: bytes) -> Sketch:
     found: list[list[list[float]]] = []
     for shape in _shapes(svg):
         if not _is_paper(shape, width, height):
-            found += _strokes(shape)
+            found += _strokes(shape, math.hypot(width, height))
     if not found:
         raise InputError(
             "", "nothing is drawn in this SVG file", "text and pictures in it are not read", kind="empty"
@@ -198,8 +198,11 @@ def _is_paper(shape: Any, width: float, height: float) -> bool:
     return bool(box[0] <= slack and box[1] <= slack and box[2] >= width - slack and box[3] >= height - slack)
 
 
-def _strokes(shape: Any) -> list[list[list[float]]]:
-    """A stroke for each part of a shape between two lifts of the pen [pixels], and the heads of arrows."""
+def _strokes(shape: Any, diagonal: float) -> list[list[list[float]]]:
+    """A stroke for each part of a shape between two lifts of the pen [pixels], and the heads of arrows.
+
+    diagonal: of the page.
+    """
     from svgelements import Path
 
     path = abs(Path(shape))
@@ -208,8 +211,8 @@ def _strokes(shape: Any) -> list[list[list[float]]]:
         points = _points(part)
         if len(points) < 2:
             continue
-        if not _shows(shape.stroke) and bool((points[0] != points[-1]).any()):
-            points = np.concatenate([points, points[:1]])  # a filling ends where it began
+        if not _shows(shape.stroke):
+            points = _filled(points, diagonal)
         found.append(points.tolist())
     if found:
         values = shape.values or {}
@@ -219,6 +222,14 @@ def _strokes(shape: Any) -> list[list[list[float]]]:
                 head = arrows.head((before[0], before[1]), (tip[0], tip[1]))
                 found += [[list(point) for point in head]] if head else []
     return found
+
+
+def _filled(outline: Array, diagonal: float) -> Array:
+    """What a filling without an outline shows: where a pen went, or its own border, which ends where it began."""
+    middle = brush.centre_line(outline, diagonal) if np.isfinite(outline).all() else None
+    if middle is not None:
+        return middle
+    return outline if bool((outline[0] == outline[-1]).all()) else np.concatenate([outline, outline[:1]])
 
 
 def _points(part: Any) -> Array:
