@@ -22,6 +22,7 @@ __all__ = ["Choice", "close_outlines"]
 
 CLOSED = 2.5  # [rad²] what a closed outline is worth: the corner of a square that closes it
 COINCIDENCE = 0.9  # [rad²] for every further line that ends at the same place
+SMOOTH = 0.3  # [rad²]: two branches that continue each other so well do not both end there
 GAP = 0.15  # of an outline's length: what its ends may be apart
 SHORTEST = 8.0  # pen widths: less is no outline
 MOST_BRANCHES = 6  # of a junction that is looked at: there are 76 ways to pair six
@@ -103,10 +104,12 @@ def _options(junction: Junction) -> list[tuple[float, Pairs]]:
         for i in range(j)
     }
     count = len(junction.branches)
-    options = [
-        (sum(cost[pair] for pair in pairs) + _ends_cost(count - 2 * len(pairs)), pairs)
-        for pairs in map(list, _matchings(count))
-    ]
+    smooth = [pair for pair, turn in cost.items() if turn < SMOOTH]
+    options = []
+    for pairs in map(list, _matchings(count)):
+        passing = {branch for pair in pairs for branch in pair}
+        if all(i in passing or j in passing for i, j in smooth):
+            options.append((sum(cost[pair] for pair in pairs) + _ends_cost(count - len(passing)), pairs))
     options.sort(key=lambda option: option[0])
     return [option for option in options if option[0] < options[0][0] + 2 * CLOSED]
 
