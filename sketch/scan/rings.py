@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import combinations, count
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -156,14 +156,15 @@ def _circle(points: Points) -> tuple[Points, float]:
     return origin + np.array([a, b]) / 2, float(np.sqrt(max(c + (a * a + b * b) / 4, 0.0)))
 
 
-def take_rings(graph: Graph, rings: list[Way], pen: float) -> tuple[Graph | None, list[Way]]:
-    """Take the rings that other ink touches out of the graph, in place.
+def take_rings(
+    graph: Graph, rings: list[Way], pen: float, names: Iterator[int]
+) -> tuple[Graph | None, list[Way]]:
+    """Take the rings that other ink touches out of the graph, in place. names: for stretches of ink.
 
     Each leaves one node at its centre, at which the edges that ran into its belt end.  Returns the graph of the
     tangles as it was with the rings in it, or None without any, and the rings taken.
     """
     whole = list(graph.edges)
-    names = count(1 + max((name for edge in whole for name in edge.ink), default=-1))
     for edge in whole:
         if not edge.ink:
             edge.ink = {next(names): edge.points}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -84,9 +85,9 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
         return Traced()
     page = read_page(work)
     mask = ink_mask(page, NEARBY)
-    skeleton, count = thin(mask)
+    skeleton, size = thin(mask)
     distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
-    pen = _pen_width(mask, skeleton, distance) if count else 0.0
+    pen = _pen_width(mask, skeleton, distance) if size else 0.0
     return Traced([], scale, page, mask, skeleton, distance, pen)
 
 
@@ -108,18 +109,18 @@ def _strokes(seen: Traced) -> list[Points]:
     seen.specks = drop_specks(mask, pen)
     hollowed = hollow_fills(mask, distance, pen)
     if fill_pinholes(mask, pen) or hollowed:
-        skeleton, count = thin(mask)
+        skeleton, size = thin(mask)
         distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     else:
         skeleton &= mask
-        count = cv2.countNonZero(skeleton)
+        size = cv2.countNonZero(skeleton)
     seen.skeleton, seen.distance = skeleton, distance
-    graph = build_graph(trace(skeleton, count), distance, pen)
+    graph = build_graph(trace(skeleton, size), distance, pen)
     centre_on_ink(graph, page.darkness, pen)
     sharpen_corners(graph, distance, pen)
-    found = find_rings(mask, distance, pen)
-    _, rings = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen)
-    whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen)
+    found, names = find_rings(mask, distance, pen), count()
+    _, rings = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
+    whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen, names)
     rings += doubtful
     ways = Ways(graph, pen)
     likeliest = [_drawn(way, seen) for way in ways.likeliest()] + [_drawn(ring, seen) for ring in rings]
