@@ -12,12 +12,24 @@ from cli.arguments import UsageError
 __all__ = ["configure"]
 
 SUBJECTS = ("physics", "stress", "recognition", "pipeline")
+EPILOG = """\
+subjects:
+  physics      error against time, for cases whose motion is known, beside pymunk
+  stress       piles, stacks and jams: energy, overlap, time
+  recognition  how many drawings are read rightly, and how fast
+  pipeline     whole processes, from a drawing to a video and to numbers
+
+examples:
+  sketchsim bench physics --plot error.png
+  sketchsim bench pipeline --runs 3
+"""
 SOURCE = Path(__file__).resolve().parents[2]  # or, of an installed package, a folder without benchmarks
 
 
 def configure(p: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     p.description = "Measure the engine, the recognizer or the whole way to a video, in the source folder."
+    p.epilog = EPILOG
     p.add_argument("subject", choices=SUBJECTS)
     p.add_argument(
         "rest", nargs=argparse.REMAINDER, metavar="...", help="its options; -h after it lists them"
