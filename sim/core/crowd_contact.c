@@ -3,24 +3,32 @@
 
 static const double APART = 1e3; /* conditioning up to which two points are solved as a pair */
 
-static void fill_point(Point *p, const ManifoldPoint *found, const Contact *c, const Mover *a, const Mover *b, Vec at_a,
-                       Vec at_b, double radius_a, double radius_b) {
-    Vec n = c->normal, t = vperp(n), ra = vsub(found->point, at_a), rb = vsub(found->point, at_b);
-    double m = c->inverse_mass_a + c->inverse_mass_b;
-    *p = (Point){0};
+static void fill_point(Contact *c, int32_t k, const ManifoldPoint *found, const Mover *a, const Mover *b, Vec ra, Vec rb,
+                       double radius_a, double radius_b) {
+    Point *p = &c->point[k];
+    PointPlace *at = &c->place[k];
+    Vec n = c->normal;
     p->spin_na = vcross(ra, n);
     p->spin_nb = vcross(rb, n);
-    p->spin_ta = vcross(ra, t);
-    p->spin_tb = vcross(rb, t);
-    p->along_na = vdot(ra, n) - radius_a; /* a disk touches with another point of it as it turns: its centre counts */
-    p->along_nb = vdot(rb, n) + radius_b;
-    p->mobility = m + c->inverse_moment_a * p->spin_na * p->spin_na + c->inverse_moment_b * p->spin_nb * p->spin_nb;
+    p->mobility = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * p->spin_na * p->spin_na +
+                  c->inverse_moment_b * p->spin_nb * p->spin_nb;
     p->mass_n = 1 / p->mobility;
-    p->mass_t = 1 / (m + c->inverse_moment_a * p->spin_ta * p->spin_ta + c->inverse_moment_b * p->spin_tb * p->spin_tb);
+    p->impulse_n = 0;
+    at->along_na = vdot(ra, n) - radius_a; /* a disk touches with another point of it as it turns: its centre counts */
+    at->along_nb = vdot(rb, n) + radius_b;
+    at->approach = 0;
     /* what a mover has done in the frame so far is in the formula of crowd_rows.c, and taken off here */
-    p->separation = found->separation - vdot(vsub(b->moved, a->moved), n) - b->turned * p->spin_nb +
-                    a->turned * p->spin_na +
-                    0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
+    at->separation = found->separation - vdot(vsub(b->moved, a->moved), n) - b->turned * p->spin_nb +
+                     a->turned * p->spin_na +
+                     0.5 * (b->turned * b->turned * at->along_nb - a->turned * a->turned * at->along_na);
+}
+
+/* The row of friction acts halfway between the points. */
+static void fill_friction(Contact *c, Vec ra, Vec rb) {
+    c->spin_ta = vdot(ra, c->normal); /* r x t, as t is n turned by a right angle */
+    c->spin_tb = vdot(rb, c->normal);
+    c->mass_t = 1 / (c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * c->spin_ta * c->spin_ta +
+                     c->inverse_moment_b * c->spin_tb * c->spin_tb);
 }
 
 double contact_reach(const World *world, int32_t piece_a, int32_t piece_b) {
@@ -36,8 +44,14 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
     c->normal = m->normal;
     c->turned = b->turned - a->turned;
     c->moved = vsub(b->moved, a->moved);
+    c->impulse_t = 0;
+    if (m->count > 0) {
+        Vec middle = m->count > 1 ? vscale(vadd(m->point[0].point, m->point[1].point), 0.5) : m->point[0].point;
+        fill_friction(c, vsub(middle, at_a), vsub(middle, at_b));
+    }
     for (int32_t k = 0; k < m->count; k++) {
-        fill_point(&c->point[k], &m->point[k], c, a, b, at_a, at_b, radius_a, radius_b);
+        Vec point = m->point[k].point;
+        fill_point(c, k, &m->point[k], a, b, vsub(point, at_a), vsub(point, at_b), radius_a, radius_b);
         int32_t same = -1;
         double nearest = 4 * c->slack;
         for (int32_t l = 0; old && l < old->count; l++) {
@@ -49,7 +63,7 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
         }
         if (same < 0) continue;
         c->point[k].impulse_n = old->impulse_n[same];
-        c->point[k].impulse_t = old->impulse_t[same];
+        c->impulse_t = old->impulse_t;
     }
     c->pair_mass = 0;
     if (c->count < 2) return;

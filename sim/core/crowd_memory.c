@@ -69,11 +69,10 @@ int32_t index_find(const Index *index, uint64_t key) {
 }
 
 Record contact_record(const Contact *c) {
-    Record r = {.key = c->key, .a = c->a, .b = c->b, .count = c->count};
+    Record r = {.key = c->key, .a = c->a, .b = c->b, .count = c->count, .impulse_t = c->impulse_t};
     for (int32_t k = 0; k < c->count; k++) {
         r.lever[k] = c->point[k].spin_na;
         r.impulse_n[k] = c->point[k].impulse_n;
-        r.impulse_t[k] = c->point[k].impulse_t;
     }
     return r;
 }
@@ -118,11 +117,11 @@ int memory_store(Memory *memory, const Contact *contact, int32_t count, const Mo
 
 void memory_scale(Memory *memory, double by) {
     if (by == 1) return;
-    for (int32_t i = 0; i < memory->count; i++)
-        for (int32_t k = 0; k < memory->record[i].count; k++) {
-            memory->record[i].impulse_n[k] *= by;
-            memory->record[i].impulse_t[k] *= by;
-        }
+    for (int32_t i = 0; i < memory->count; i++) {
+        Record *r = &memory->record[i];
+        for (int32_t k = 0; k < r->count; k++) r->impulse_n[k] *= by;
+        r->impulse_t *= by;
+    }
 }
 
 const Record *memory_recall(const Memory *memory, uint64_t key) {

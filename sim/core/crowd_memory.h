@@ -29,7 +29,7 @@ typedef struct Record {
     uint64_t key;
     int32_t a, b, count;
     double lever[2]; /* where along the contact a point is: how far from a's centre */
-    double impulse_n[2], impulse_t[2];
+    double impulse_n[2], impulse_t;
 } Record;
 
 Record contact_record(const Contact *contact);

@@ -41,9 +41,12 @@ static inline double speed(const Meeting *m, Vec direction, double lever_a, doub
 }
 
 /* How far apart the point's two surfaces are now; turning counts to second order. */
-static inline double separation(const Contact *c, const Point *p, const Mover *a, const Mover *b) {
-    return p->separation + vdot(vsub(b->moved, a->moved), c->normal) + b->turned * p->spin_nb - a->turned * p->spin_na -
-           0.5 * (b->turned * b->turned * p->along_nb - a->turned * a->turned * p->along_na);
+static inline double separation(const Contact *c, int32_t k, const Mover *a, const Mover *b) {
+    const Point *p = &c->point[k];
+    const PointPlace *at = &c->place[k];
+    return at->separation + vdot(vsub(b->moved, a->moved), c->normal) + b->turned * p->spin_nb -
+           a->turned * p->spin_na -
+           0.5 * (b->turned * b->turned * at->along_nb - a->turned * a->turned * at->along_na);
 }
 
 void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double dt) {
@@ -55,12 +58,11 @@ void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double d
         Meeting m = meet(c, a, b);
         for (int32_t k = 0; k < c->count; k++) {
             Point *p = &c->point[k];
-            double gap = separation(c, p, a, b);
+            double gap = separation(c, k, a, b);
             p->limit = gap > 0 ? -gap * inverse_dt : 0;
-            if (p->impulse_n == 0) continue;
-            push(&m, n, p->spin_na, p->spin_nb, p->impulse_n);
-            push(&m, t, p->spin_ta, p->spin_tb, p->impulse_t);
+            if (p->impulse_n != 0) push(&m, n, p->spin_na, p->spin_nb, p->impulse_n);
         }
+        if (c->impulse_t != 0) push(&m, t, c->spin_ta, c->spin_tb, c->impulse_t);
         leave(&m, a, b);
     }
 }
@@ -71,23 +73,24 @@ void contacts_measure(Contact *contact, int32_t count, const Mover *mover, doubl
         if (c->elasticity <= 0) continue;
         Meeting m = meet(c, &mover[c->a], &mover[c->b]);
         for (int32_t k = 0; k < c->count; k++) {
-            Point *p = &c->point[k];
-            p->approach = 0;
+            const Point *p = &c->point[k];
+            c->place[k].approach = 0;
             if (p->impulse_n > 0) continue;
             double v = speed(&m, c->normal, p->spin_na, p->spin_nb);
-            if (v < -threshold) p->approach = v;
+            if (v < -threshold) c->place[k].approach = v;
         }
     }
 }
 
-static inline void solve_friction(const Contact *c, Point *p, Meeting *m, Vec t) {
-    if (p->impulse_n == 0 && p->impulse_t == 0) return;
-    double v = speed(m, t, p->spin_ta, p->spin_tb), most = c->friction * p->impulse_n;
-    double sum = p->impulse_t - p->mass_t * v;
+static inline void solve_friction(Contact *c, Meeting *m, double pressed) {
+    if (pressed == 0 && c->impulse_t == 0) return;
+    Vec t = vperp(c->normal);
+    double v = speed(m, t, c->spin_ta, c->spin_tb), most = c->friction * pressed;
+    double sum = c->impulse_t - c->mass_t * v;
     sum = sum > most ? most : sum < -most ? -most : sum;
-    double impulse = sum - p->impulse_t;
-    p->impulse_t = sum;
-    push(m, t, p->spin_ta, p->spin_tb, impulse);
+    double impulse = sum - c->impulse_t;
+    c->impulse_t = sum;
+    push(m, t, c->spin_ta, c->spin_tb, impulse);
 }
 
 /* Bring the normal velocity to what is wanted, without pulling. Returns the impulse. */
@@ -103,8 +106,8 @@ static inline double solve_normal(const Contact *c, Point *p, Meeting *m, double
 }
 
 /* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
-static inline void solve_rolling(const Contact *c, Meeting *m) {
-    double normal = c->point[0].impulse_n + (c->count > 1 ? c->point[1].impulse_n : 0), most = c->rolling * normal;
+static inline void solve_rolling(const Contact *c, Meeting *m, double pressed) {
+    double most = c->rolling * pressed;
     double wanted = (m->spin_a - m->spin_b) / (m->inverse_moment_a + m->inverse_moment_b);
     wanted = wanted > most ? most : wanted < -most ? -most : wanted;
     m->spin_a -= m->inverse_moment_a * wanted;
@@ -144,7 +147,7 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
         if (!first && heat[c->a] < pass - 1 && heat[c->b] < pass - 1) continue;
         Mover *a = &mover[c->a], *b = &mover[c->b];
         Meeting m = meet(c, a, b);
-        double change = 0;
+        double change = 0, pressed = 0;
         if (c->count == 2 && c->pair_mass > 0) {
             change = solve_pair(c, &m);
         } else {
@@ -154,9 +157,9 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
                 change = larger(change, fabs(impulse) * p->mobility);
             }
         }
-        Vec t = vperp(c->normal);
-        for (int32_t k = 0; k < c->count; k++) solve_friction(c, &c->point[k], &m, t);
-        if (c->rolling > 0) solve_rolling(c, &m);
+        for (int32_t k = 0; k < c->count; k++) pressed += c->point[k].impulse_n;
+        solve_friction(c, &m, pressed);
+        if (c->rolling > 0) solve_rolling(c, &m, pressed);
         leave(&m, a, b);
         if (change * dt <= c->fine) continue;
         heated = true;
@@ -166,8 +169,8 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
     return heated;
 }
 
-static inline double overlap(const Contact *c, const Point *p, const Mover *a, const Mover *b) {
-    double depth = -separation(c, p, a, b) - c->slop;
+static inline double overlap(const Contact *c, int32_t k, const Mover *a, const Mover *b) {
+    double depth = -separation(c, k, a, b) - c->slop;
     return depth < c->slack ? depth : c->slack;
 }
 
@@ -185,7 +188,7 @@ void contacts_part(Contact *contact, int32_t count, Mover *mover) {
         Mover *a = &mover[c->a], *b = &mover[c->b];
         if (c->count == 2 && c->pair_mass > 0) {
             const Point *p = &c->point[0], *q = &c->point[1];
-            double dp = overlap(c, p, a, b), dq = overlap(c, q, a, b);
+            double dp = overlap(c, 0, a, b), dq = overlap(c, 1, a, b);
             if (dp <= 0 && dq <= 0) continue;
             double x = (dp * q->mobility - c->coupling * dq) * c->pair_mass;
             double y = (dq * p->mobility - c->coupling * dp) * c->pair_mass;
@@ -198,7 +201,7 @@ void contacts_part(Contact *contact, int32_t count, Mover *mover) {
             continue;
         }
         for (int32_t k = 0; k < c->count; k++) {
-            double depth = overlap(c, &c->point[k], a, b);
+            double depth = overlap(c, k, a, b);
             if (depth > 0) part(c, &c->point[k], a, b, RATE * depth * c->point[k].mass_n);
         }
     }
@@ -208,12 +211,12 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         for (int32_t k = 0; k < c->count; k++) {
-            Point *p = &c->point[k];
-            if (p->approach == 0 || p->impulse_n <= 0) continue;
+            PointPlace *at = &c->place[k];
+            if (at->approach == 0 || c->point[k].impulse_n <= 0) continue;
             Meeting m = meet(c, &mover[c->a], &mover[c->b]);
-            solve_normal(c, p, &m, -c->elasticity * p->approach);
+            solve_normal(c, &c->point[k], &m, -c->elasticity * at->approach);
             leave(&m, &mover[c->a], &mover[c->b]);
-            p->approach = 0;
+            at->approach = 0;
         }
     }
 }

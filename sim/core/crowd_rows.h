@@ -17,33 +17,41 @@ typedef struct Mover {
 } Mover;
 
 typedef struct Point {
-    double separation;           /* when the frame began */
-    double spin_na, spin_nb;     /* r x n of either body: the lever of the normal */
-    double spin_ta, spin_tb;     /* r x t */
-    double along_na, along_nb;   /* r . n, for the second order of turning */
-    double mass_n, mass_t;       /* effective masses */
-    double mobility;             /* 1 / mass_n */
-    double impulse_n, impulse_t; /* of one substep, kept for warm starting */
+    double spin_na, spin_nb; /* r x n of either body: the lever of the normal */
+    double mass_n, mobility; /* effective mass, and 1 / it */
+    double impulse_n;        /* of one substep, kept for warm starting */
     double limit; /* the fastest that the two may approach in the substep, less than 0: at a gap, not to pass it */
-    double approach; /* normal velocity before the touch, for restitution; 0 when none is due */
 } Point;
 
+/* What of a point is not needed in the passes. */
+typedef struct PointPlace {
+    double separation;           /* when the frame began */
+    double along_na, along_nb;   /* r . n, for the second order of turning */
+    double approach; /* normal velocity before the touch, for restitution; 0 when none is due */
+} PointPlace;
+
+/* What the passes read comes first: it is what the cache holds.  The points of a contact lie on one line, along which they
+ * slide as one: a single row of friction does for both. */
 typedef struct Contact {
     int32_t a, b; /* movers */
     int32_t count;
-    double inverse_mass_a, inverse_moment_a, inverse_mass_b, inverse_moment_b;
-    double slack; /* how far the pair may shift before its points are found anew [m] */
-    double slop; /* overlap that is left alone, so that resting contacts do not come and go [m] */
-    double fine; /* of a substep: a way too short to matter [m] */
     Vec normal; /* from a to b */
-    double friction, elasticity;
-    double rolling; /* lever of the rolling resistance [m]; 0: none */
+    double inverse_mass_a, inverse_moment_a, inverse_mass_b, inverse_moment_b;
+    double fine; /* of a substep: a way too short to matter [m] */
     double coupling; /* of the two points: how a push at one moves the other [1/kg] */
     double pair_mass; /* 1 / determinant of their 2 x 2 matrix; 0: too close together to be solved as a pair */
+    Point point[2];
+    double spin_ta, spin_tb; /* r x t */
+    double mass_t, impulse_t;
+    double friction;
+    double rolling; /* lever of the rolling resistance [m]; 0: none */
+    double elasticity;
+    double slack; /* how far the pair may shift before its points are found anew [m] */
+    double slop; /* overlap that is left alone, so that resting contacts do not come and go [m] */
+    PointPlace place[2];
     double turned; /* of b against a when the points were found, in this frame */
     Vec moved; /* likewise */
     uint64_t key; /* the pieces */
-    Point point[2];
 } Contact;
 
 /* Once for each contact of a substep, before it is solved. */
