@@ -61,15 +61,13 @@ static void sort(Sweep *sweep, const Box *box, const bool *moving, bool in_y) {
     }
 }
 
-static int add_pair(Sweep *sweep, int32_t i, int32_t j) {
-    if (sweep->pair_count == sweep->pair_capacity) {
-        int32_t capacity = 2 * sweep->pair_capacity;
-        Pair *more = realloc(sweep->pair, (size_t)capacity * sizeof *more);
-        if (!more) return SIM_OUT_OF_MEMORY;
-        sweep->pair = more;
-        sweep->pair_capacity = capacity;
-    }
-    sweep->pair[sweep->pair_count++] = i < j ? (Pair){i, j} : (Pair){j, i};
+static int pair_room(Sweep *sweep, int32_t more) {
+    if (sweep->pair_count + more <= sweep->pair_capacity) return SIM_OK;
+    int32_t capacity = 2 * sweep->pair_capacity + more;
+    Pair *pair = realloc(sweep->pair, (size_t)capacity * sizeof *pair);
+    if (!pair) return SIM_OUT_OF_MEMORY;
+    sweep->pair = pair;
+    sweep->pair_capacity = capacity;
     return SIM_OK;
 }
 
@@ -82,11 +80,16 @@ int sweep_pairs(Sweep *sweep, const Box *box, const bool *moving) {
     sweep->pair_count = 0;
     for (int32_t k = 0; k < count; k++) {
         double high = sweep->high[k], low_across = lows_across[k], high_across = highs_across[k];
-        bool still = !moves[k];
-        for (int32_t l = k + 1; l < count && lows[l] <= high; l++) {
-            if (lows_across[l] > high_across || highs_across[l] < low_across || (still && !moves[l])) continue;
-            if (add_pair(sweep, sweep->order[k], sweep->order[l]) != SIM_OK) return SIM_OUT_OF_MEMORY;
+        int32_t end = k + 1, i = sweep->order[k];
+        while (end < count && lows[end] <= high) end++;
+        if (pair_room(sweep, end - k) != SIM_OK) return SIM_OUT_OF_MEMORY;
+        Pair *pair = sweep->pair + sweep->pair_count;
+        for (int32_t l = k + 1; l < end; l++) { /* every one is written, and kept by counting it: no branch to mispredict */
+            int32_t j = sweep->order[l];
+            *pair = (Pair){i < j ? i : j, i < j ? j : i};
+            pair += (lows_across[l] <= high_across) & (highs_across[l] >= low_across) & (moves[k] | moves[l]);
         }
+        sweep->pair_count = (int32_t)(pair - sweep->pair);
     }
     return SIM_OK;
 }
