@@ -49,10 +49,10 @@ int group_gather(Exact *e, int32_t body, double time) {
             bool held = (e->track[i].island >= 0 && e->track[i].island == e->track[j].island) ||
                         (world->joint_count > 0 && is_joined(world, i, j));
             if (!held) {
-                State other = motion_state(&e->track[j].motion, time);
                 double reach = world->body[i].reach + world->body[j].reach + e->slack.gap;
-                Vec apart = vsub(other.p, e->group.state[head].p);
+                Vec apart = vsub(motion_position(&e->track[j].motion, time), e->group.state[head].p);
                 if (vdot(apart, apart) > reach * reach) continue;
+                State other = motion_state(&e->track[j].motion, time);
                 int32_t count;
                 int status = touching_pair(e, i, &e->group.state[head], j, &other, &count);
                 if (status != SIM_OK) return status;

@@ -63,6 +63,9 @@ static bool merge_same_point(Touching *out, int32_t count, const Touching *found
 
 int32_t touching_now(const World *world, int32_t body_a, const State *state_a, int32_t body_b, const State *state_b,
                      const Slack *slack, Touching *out, int32_t capacity) {
+    double reach = world->body[body_a].reach + world->body[body_b].reach + slack->gap;
+    Vec apart = vsub(state_a->p, state_b->p);
+    if (vdot(apart, apart) > reach * reach) return 0;
     Placed pa = placed(state_a), pb = placed(state_b);
     ShapeWalk shapes = walk_shapes(world, body_a, pa.at, body_b, pb.at, slack->gap);
     int32_t count = 0;
