@@ -70,6 +70,7 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
                                     look == 0 && pass == 0);
         }
         status = touch_near(crowd, world, left, dt, threshold, &found);
+        if (contacts_foresee(crowd->contact, crowd->contact_count, mover, dt, crowd->heat, crowd->passes)) found = true;
     }
     if (status != SIM_OK) return status;
     move(crowd, dt);

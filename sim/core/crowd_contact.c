@@ -14,13 +14,13 @@ static void fill_point(Contact *c, int32_t k, const ManifoldPoint *found, const 
                   c->inverse_moment_b * p->spin_nb * p->spin_nb;
     p->mass_n = 1 / p->mobility;
     p->impulse_n = 0;
-    at->along_na = vdot(ra, n) - radius_a; /* a disk touches with another point of it as it turns: its centre counts */
-    at->along_nb = vdot(rb, n) + radius_b;
+    /* a disk touches with another point of it as it turns: its centre counts */
+    at->along_na = vdot(ra, n) + (c->side > 0 ? radius_b : -radius_a);
+    at->along_nb = vdot(rb, n) + (c->side < 0 ? -radius_a : radius_b);
     at->approach = 0;
-    /* what a mover has done in the frame so far is in the formula of crowd_rows.c, and taken off here */
-    at->separation = found->separation - vdot(vsub(b->moved, a->moved), n) - b->turned * p->spin_nb +
-                     a->turned * p->spin_na +
-                     0.5 * (b->turned * b->turned * at->along_nb - a->turned * a->turned * at->along_na);
+    at->separation = 0;
+    /* what the movers have done in the frame so far is in separation(), and taken off here */
+    at->separation = found->separation - contact_separation(c, k, a, b);
 }
 
 /* The row of friction acts halfway between the points. */
@@ -42,6 +42,7 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
     double radius_a = world->piece[c->key >> 32].radius, radius_b = world->piece[c->key & 0xffffffffu].radius;
     c->count = m->count;
     c->normal = m->normal;
+    c->side = m->side;
     c->turned = b->turned - a->turned;
     c->moved = vsub(b->moved, a->moved);
     c->impulse_t = 0;
@@ -97,7 +98,7 @@ static void set_masses(Contact *c, const Mover *a, const Mover *b) {
 }
 
 void contact_add(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
-    static const double SLACK = 0.05, SLOP = 0.005, FINE = 5e-3, ROLLING = 2e-3;
+    static const double SLACK = 0.05, SLOP = 0.005, FINE = 2e-3, ROLLING = 6e-3;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
     double reach = contact_reach(world, near->piece_a, near->piece_b);

@@ -26,7 +26,7 @@ typedef struct Point {
 /* What of a point is not needed in the passes. */
 typedef struct PointPlace {
     double separation;           /* when the frame began */
-    double along_na, along_nb;   /* r . n, for the second order of turning */
+    double along_na, along_nb;   /* r . n of the corner or centre that touches, for the second order of turning */
     double approach; /* normal velocity before the touch, for restitution; 0 when none is due */
 } PointPlace;
 
@@ -35,6 +35,7 @@ typedef struct PointPlace {
 typedef struct Contact {
     int32_t a, b; /* movers */
     int32_t count;
+    int32_t side; /* the normal turns with: 1 a, -1 b, 0 neither */
     Vec normal; /* from a to b */
     double inverse_mass_a, inverse_moment_a, inverse_mass_b, inverse_moment_b;
     double fine; /* of a substep: a way too short to matter [m] */
@@ -54,6 +55,9 @@ typedef struct Contact {
     uint64_t key; /* the pieces */
 } Contact;
 
+/* How far apart a point's two surfaces are now. */
+double contact_separation(const Contact *contact, int32_t point, const Mover *a, const Mover *b);
+
 /* Once for each contact of a substep, before it is solved. */
 void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double dt);
 void contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold);
@@ -61,6 +65,10 @@ void contacts_measure(Contact *contact, int32_t count, const Mover *mover, doubl
 /* One pass.  heat: by mover, the last pass that changed it noticeably; a pass other than the first of a substep goes only
  * to contacts of bodies that the pass before it heated.  Whether this pass heated any. */
 bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first);
+
+/* At the velocities that were found bodies may turn so fast that gaps close by the second order of it: then they may approach
+ * less fast.  Whether that changed anything; the bodies are hot. */
+bool contacts_foresee(Contact *contact, int32_t count, const Mover *mover, double dt, int64_t *heat, int64_t pass);
 void contacts_part(Contact *contact, int32_t count, Mover *mover);
 void contacts_bounce(Contact *contact, int32_t count, Mover *mover);
 

@@ -99,7 +99,7 @@ static Facing choose(Facings f, double least) {
 static void apart(Manifold *m, Vec normal, double gap) {
     m->normal = normal;
     m->gap = gap;
-    m->count = 0;
+    m->count = m->side = 0;
 }
 
 static void one_point(Manifold *m, Vec normal, Vec on_a, Vec on_b, double margin) {
@@ -108,6 +108,7 @@ static void one_point(Manifold *m, Vec normal, Vec on_a, Vec on_b, double margin
     m->normal = normal;
     m->gap = separation;
     m->count = separation <= margin;
+    m->side = 0;
     m->point[0] = (ManifoldPoint){vmad(on_a, 0.5, d), separation};
 }
 
@@ -147,6 +148,7 @@ static void polygon_circle(const Outline *a, const Outline *b, double margin, Ma
             apart(m, n, distance - b->radius);
     } else if (f.touches) {
         one_point(m, n, vmad(centre, -f.separation, n), vmad(centre, -b->radius, n), margin);
+        m->side = 1;
     } else {
         apart(m, n, f.separation - b->radius);
     }
@@ -201,6 +203,7 @@ static void clip(const Outline *a, const Outline *b, Facing f, bool flip, double
     if (vdot(b->normal[before(b, j)], n) < vdot(b->normal[j], n)) j = before(b, j);
     int32_t j2 = after(b, j);
     apart(m, flip ? vscale(n, -1) : n, f.separation);
+    m->side = flip ? -1 : 1;
     if (!f.touches) return;
     Vec p = a->vertex[i], first = b->vertex[j2], span = vsub(b->vertex[j], first); /* b's side along t */
     double start = vdot(p, t), end = vdot(a->vertex[i2], t), s = vdot(first, t), s2 = s + vdot(span, t);
@@ -261,6 +264,7 @@ void manifold_find(const Outline *a, const Outline *b, double margin, Manifold *
     } else if (b->count > 1) {
         polygon_circle(b, a, margin, m);
         m->normal = vscale(m->normal, -1);
+        m->side = -m->side;
     } else {
         between_circles(a, b, margin, m);
     }

@@ -27,6 +27,7 @@ typedef struct Manifold {
     Vec normal; /* unit, from a to b */
     double gap; /* how far they are apart along the normal: never more than their distance; negative in overlap */
     int32_t count;
+    int32_t side; /* whose side the normal stands on: 1 a's, -1 b's, 0 neither's: it is of corners or circles */
     ManifoldPoint point[2];
 } Manifold;
 
