@@ -3,24 +3,17 @@
 
 static const double APART = 1e3; /* conditioning up to which two points are solved as a pair */
 
-static void fill_point(Contact *c, int32_t k, const ManifoldPoint *found, const Mover *a, const Mover *b, Vec ra, Vec rb,
-                       double radius_a, double radius_b) {
-    Point *p = &c->point[k];
-    PointPlace *at = &c->place[k];
+static void fill_point(Contact *c, int32_t k, Vec ra, Vec rb, double radius_a, double radius_b) {
     Vec n = c->normal;
-    p->spin_na = vcross(ra, n);
-    p->spin_nb = vcross(rb, n);
-    p->mobility = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * p->spin_na * p->spin_na +
-                  c->inverse_moment_b * p->spin_nb * p->spin_nb;
-    p->mass_n = 1 / p->mobility;
-    p->impulse_n = 0;
+    double na = vcross(ra, n), nb = vcross(rb, n);
+    c->spin_na[k] = na;
+    c->spin_nb[k] = nb;
+    c->mobility[k] =
+        c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * na * na + c->inverse_moment_b * nb * nb;
+    c->mass_n[k] = 1 / c->mobility[k];
     /* a disk touches with another point of it as it turns: its centre counts */
-    at->along_na = vdot(ra, n) + (c->side > 0 ? radius_b : -radius_a);
-    at->along_nb = vdot(rb, n) + (c->side < 0 ? -radius_a : radius_b);
-    at->approach = 0;
-    at->separation = 0;
-    /* what the movers have done in the frame so far is in separation(), and taken off here */
-    at->separation = found->separation - contact_separation(c, k, a, b);
+    c->along_na[k] = vdot(ra, n) + (c->side > 0 ? radius_b : -radius_a);
+    c->along_nb[k] = vdot(rb, n) + (c->side < 0 ? -radius_a : radius_b);
 }
 
 /* The row of friction acts halfway between the points. */
@@ -40,38 +33,41 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
     const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
     Vec at_a = vadd(world->body[c->a].position, a->moved), at_b = vadd(world->body[c->b].position, b->moved);
     double radius_a = world->piece[c->key >> 32].radius, radius_b = world->piece[c->key & 0xffffffffu].radius;
+    Two none = {0, 0}, found = none;
     c->count = m->count;
     c->normal = m->normal;
     c->side = m->side;
     c->turned = b->turned - a->turned;
     c->moved = vsub(b->moved, a->moved);
-    c->impulse_t = 0;
-    if (m->count > 0) {
-        Vec middle = m->count > 1 ? vscale(vadd(m->point[0].point, m->point[1].point), 0.5) : m->point[0].point;
-        fill_friction(c, vsub(middle, at_a), vsub(middle, at_b));
-    }
+    c->impulse_t = c->pair_mass = 0;
+    c->spin_na = c->spin_nb = c->mobility = c->mass_n = c->along_na = c->along_nb = none;
+    c->impulse_n = c->limit = c->approach = c->separation = none;
+    if (m->count == 0) return;
+    Vec middle = m->count > 1 ? vscale(vadd(m->point[0].point, m->point[1].point), 0.5) : m->point[0].point;
+    fill_friction(c, vsub(middle, at_a), vsub(middle, at_b));
     for (int32_t k = 0; k < m->count; k++) {
         Vec point = m->point[k].point;
-        fill_point(c, k, &m->point[k], a, b, vsub(point, at_a), vsub(point, at_b), radius_a, radius_b);
+        fill_point(c, k, vsub(point, at_a), vsub(point, at_b), radius_a, radius_b);
+        found[k] = m->point[k].separation;
         int32_t same = -1;
         double nearest = 4 * c->slack;
         for (int32_t l = 0; old && l < old->count; l++) {
-            double shift = fabs(old->lever[l] - c->point[k].spin_na);
+            double shift = fabs(old->lever[l] - c->spin_na[k]);
             if (shift < nearest) {
                 nearest = shift;
                 same = l;
             }
         }
         if (same < 0) continue;
-        c->point[k].impulse_n = old->impulse_n[same];
+        c->impulse_n[k] = old->impulse_n[same];
         c->impulse_t = old->impulse_t;
     }
-    c->pair_mass = 0;
+    /* what the movers have done in the frame so far is in contact_separation(), and taken off here */
+    c->separation = found - contact_separation(c, a, b);
     if (c->count < 2) return;
-    const Point *p = &c->point[0], *q = &c->point[1];
-    double k11 = p->mobility, k22 = q->mobility;
-    c->coupling = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * p->spin_na * q->spin_na +
-                  c->inverse_moment_b * p->spin_nb * q->spin_nb;
+    double k11 = c->mobility[0], k22 = c->mobility[1];
+    c->coupling = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * c->spin_na[0] * c->spin_na[1] +
+                  c->inverse_moment_b * c->spin_nb[0] * c->spin_nb[1];
     double determinant = k11 * k22 - c->coupling * c->coupling;
     if (k11 * k22 < APART * determinant) c->pair_mass = 1 / determinant;
 }

@@ -71,8 +71,8 @@ int32_t index_find(const Index *index, uint64_t key) {
 Record contact_record(const Contact *c) {
     Record r = {.key = c->key, .a = c->a, .b = c->b, .count = c->count, .impulse_t = c->impulse_t};
     for (int32_t k = 0; k < c->count; k++) {
-        r.lever[k] = c->point[k].spin_na;
-        r.impulse_n[k] = c->point[k].impulse_n;
+        r.lever[k] = c->spin_na[k];
+        r.impulse_n[k] = c->impulse_n[k];
     }
     return r;
 }

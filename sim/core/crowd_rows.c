@@ -10,70 +10,90 @@
 
 static const double RATE = 0.6; /* share of an overlap that a pass drives out */
 
+static inline Two two(Vec v) { return (Two){v.x, v.y}; }
+static inline Two both(double x) { return (Two){x, x}; }
+static inline Two swapped(Two x) { return (Two){x[1], x[0]}; }
+static inline double sum_of(Two x) { return x[0] + x[1]; }
+
 /* A contact's two bodies while its rows are solved, held in registers: through pointers every store might change the rest. */
 typedef struct Meeting {
-    Vec velocity_a, velocity_b;
+    Two velocity_a, velocity_b; /* x, y */
     double spin_a, spin_b;
-    double inverse_mass_a, inverse_moment_a, inverse_mass_b, inverse_moment_b;
 } Meeting;
 
-static inline Meeting meet(const Contact *c, const Mover *a, const Mover *b) {
-    return (Meeting){a->velocity,       b->velocity,         a->spin,           b->spin,
-                     c->inverse_mass_a, c->inverse_moment_a, c->inverse_mass_b, c->inverse_moment_b};
+static inline Meeting meet(const Mover *a, const Mover *b) {
+    return (Meeting){two(a->velocity), two(b->velocity), a->spin, b->spin};
 }
 
 static inline void leave(const Meeting *m, Mover *a, Mover *b) {
-    a->velocity = m->velocity_a;
+    a->velocity = vec(m->velocity_a[0], m->velocity_a[1]);
     a->spin = m->spin_a;
-    b->velocity = m->velocity_b;
+    b->velocity = vec(m->velocity_b[0], m->velocity_b[1]);
     b->spin = m->spin_b;
 }
 
-static inline void push(Meeting *m, Vec direction, double lever_a, double lever_b, double impulse) {
-    m->velocity_a = vmad(m->velocity_a, -impulse * m->inverse_mass_a, direction);
-    m->spin_a -= impulse * m->inverse_moment_a * lever_a;
-    m->velocity_b = vmad(m->velocity_b, impulse * m->inverse_mass_b, direction);
-    m->spin_b += impulse * m->inverse_moment_b * lever_b;
+static inline Two normal_of(const Contact *c) { return two(c->normal); }
+static inline Two tangent_of(const Contact *c) { return (Two){-c->normal.y, c->normal.x}; }
+
+static inline void push(const Contact *c, Meeting *m, Two direction, double impulse, double twist_a, double twist_b) {
+    m->velocity_a -= both(impulse * c->inverse_mass_a) * direction;
+    m->spin_a -= c->inverse_moment_a * twist_a;
+    m->velocity_b += both(impulse * c->inverse_mass_b) * direction;
+    m->spin_b += c->inverse_moment_b * twist_b;
 }
 
-static inline double speed(const Meeting *m, Vec direction, double lever_a, double lever_b) {
-    return vdot(direction, vsub(m->velocity_b, m->velocity_a)) + m->spin_b * lever_b - m->spin_a * lever_a;
+static inline void push_normal(const Contact *c, Meeting *m, Two impulse) {
+    push(c, m, normal_of(c), sum_of(impulse), sum_of(c->spin_na * impulse), sum_of(c->spin_nb * impulse));
 }
 
-/* The second order of how a gap changes as two bodies turn by the angles and move apart by `apart` along the side: the corner
- * goes on a circle, the side turns away under it. */
-static inline double second_order(const Contact *c, int32_t k, double turned_a, double turned_b, double apart) {
-    double a = c->place[k].along_na, b = c->place[k].along_nb;
-    if (c->side > 0) return -0.5 * (turned_a * turned_a * a + turned_b * turned_b * b) + turned_a * (turned_b * b + apart);
-    if (c->side < 0) return 0.5 * (turned_a * turned_a * a + turned_b * turned_b * b) - turned_b * (turned_a * a - apart);
-    return 0.5 * (turned_a * turned_a * a - turned_b * turned_b * b);
+static inline void push_tangent(const Contact *c, Meeting *m, double impulse) {
+    push(c, m, tangent_of(c), impulse, c->spin_ta * impulse, c->spin_tb * impulse);
 }
 
-/* How far apart a point's two surfaces are when the bodies have moved and turned so in the frame. */
-static inline double separation_at(const Contact *c, int32_t k, Vec apart, double turned_a, double turned_b) {
-    const Point *p = &c->point[k];
-    return c->place[k].separation + vdot(apart, c->normal) + turned_b * p->spin_nb - turned_a * p->spin_na +
-           second_order(c, k, turned_a, turned_b, vcross(c->normal, apart));
+/* At which the points of b leave those of a. */
+static inline Two normal_speed(const Contact *c, const Meeting *m) {
+    double v = sum_of(normal_of(c) * (m->velocity_b - m->velocity_a));
+    return both(v) + both(m->spin_b) * c->spin_nb - both(m->spin_a) * c->spin_na;
 }
 
-double contact_separation(const Contact *c, int32_t k, const Mover *a, const Mover *b) {
-    return separation_at(c, k, vsub(b->moved, a->moved), a->turned, b->turned);
+static inline double tangent_speed(const Contact *c, const Meeting *m) {
+    double v = sum_of(tangent_of(c) * (m->velocity_b - m->velocity_a));
+    return v + m->spin_b * c->spin_tb - m->spin_a * c->spin_ta;
 }
+
+/* The second order of how the gaps change as two bodies turn by the angles and move apart by `apart` along the side: the
+ * corner goes on a circle, the side turns away under it. */
+static inline Two second_order(const Contact *c, double turned_a, double turned_b, double apart) {
+    Two a = both(turned_a) * c->along_na, b = both(turned_b) * c->along_nb, half = both(0.5);
+    Two squares_a = half * both(turned_a) * a, squares_b = half * both(turned_b) * b;
+    if (c->side > 0) return both(turned_a) * (b + both(apart)) - squares_a - squares_b;
+    if (c->side < 0) return squares_a + squares_b - both(turned_b) * (a - both(apart));
+    return squares_a - squares_b;
+}
+
+/* When the bodies have moved and turned so in the frame. */
+static inline Two separation_at(const Contact *c, Vec apart, double turned_a, double turned_b) {
+    return c->separation + both(vdot(apart, c->normal)) + both(turned_b) * c->spin_nb - both(turned_a) * c->spin_na +
+           second_order(c, turned_a, turned_b, vcross(c->normal, apart));
+}
+
+static inline Two separation(const Contact *c, const Mover *a, const Mover *b) {
+    return separation_at(c, vsub(b->moved, a->moved), a->turned, b->turned);
+}
+
+Two contact_separation(const Contact *c, const Mover *a, const Mover *b) { return separation(c, a, b); }
 
 void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double dt) {
     double inverse_dt = 1 / dt;
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         Mover *a = &mover[c->a], *b = &mover[c->b];
-        Vec n = c->normal, t = vperp(n);
-        Meeting m = meet(c, a, b);
-        for (int32_t k = 0; k < c->count; k++) {
-            Point *p = &c->point[k];
-            double gap = contact_separation(c, k, a, b);
-            p->limit = gap > 0 ? -gap * inverse_dt : 0;
-            if (p->impulse_n != 0) push(&m, n, p->spin_na, p->spin_nb, p->impulse_n);
-        }
-        if (c->impulse_t != 0) push(&m, t, c->spin_ta, c->spin_tb, c->impulse_t);
+        Two gap = separation(c, a, b);
+        c->limit = (Two){gap[0] > 0 ? -gap[0] * inverse_dt : 0, gap[1] > 0 ? -gap[1] * inverse_dt : 0};
+        if (sum_of(c->impulse_n) == 0 && c->impulse_t == 0) continue;
+        Meeting m = meet(a, b);
+        push_normal(c, &m, c->impulse_n);
+        push_tangent(c, &m, c->impulse_t);
         leave(&m, a, b);
     }
 }
@@ -82,73 +102,63 @@ void contacts_measure(Contact *contact, int32_t count, const Mover *mover, doubl
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         if (c->elasticity <= 0) continue;
-        Meeting m = meet(c, &mover[c->a], &mover[c->b]);
-        for (int32_t k = 0; k < c->count; k++) {
-            const Point *p = &c->point[k];
-            c->place[k].approach = 0;
-            if (p->impulse_n > 0) continue;
-            double v = speed(&m, c->normal, p->spin_na, p->spin_nb);
-            if (v < -threshold) c->place[k].approach = v;
-        }
+        Meeting m = meet(&mover[c->a], &mover[c->b]);
+        Two v = normal_speed(c, &m);
+        for (int32_t k = 0; k < c->count; k++) c->approach[k] = c->impulse_n[k] <= 0 && v[k] < -threshold ? v[k] : 0;
     }
 }
 
 static inline void solve_friction(Contact *c, Meeting *m, double pressed) {
     if (pressed == 0 && c->impulse_t == 0) return;
-    Vec t = vperp(c->normal);
-    double v = speed(m, t, c->spin_ta, c->spin_tb), most = c->friction * pressed;
-    double sum = c->impulse_t - c->mass_t * v;
+    double most = c->friction * pressed;
+    double sum = c->impulse_t - c->mass_t * tangent_speed(c, m);
     sum = sum > most ? most : sum < -most ? -most : sum;
     double impulse = sum - c->impulse_t;
     c->impulse_t = sum;
-    push(m, t, c->spin_ta, c->spin_tb, impulse);
+    push_tangent(c, m, impulse);
 }
 
-/* Bring the normal velocity to what is wanted, without pulling. Returns the impulse. */
-static inline double solve_normal(const Contact *c, Point *p, Meeting *m, double wanted) {
-    double v = speed(m, c->normal, p->spin_na, p->spin_nb);
-    double sum = p->impulse_n - p->mass_n * (v - wanted);
+/* Bring the normal velocity of a point to what is wanted, without pulling. Returns the impulse. */
+static inline double solve_normal(Contact *c, int32_t k, Meeting *m, double wanted) {
+    double sum = c->impulse_n[k] - c->mass_n[k] * (normal_speed(c, m)[k] - wanted);
     sum = sum > 0 ? sum : 0;
-    double impulse = sum - p->impulse_n;
+    double impulse = sum - c->impulse_n[k];
     if (impulse == 0) return 0;
-    p->impulse_n = sum;
-    push(m, c->normal, p->spin_na, p->spin_nb, impulse);
+    c->impulse_n[k] = sum;
+    push(c, m, normal_of(c), impulse, c->spin_na[k] * impulse, c->spin_nb[k] * impulse);
     return impulse;
 }
 
 /* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
 static inline void solve_rolling(const Contact *c, Meeting *m, double pressed) {
     double most = c->rolling * pressed;
-    double wanted = (m->spin_a - m->spin_b) / (m->inverse_moment_a + m->inverse_moment_b);
+    double wanted = (m->spin_a - m->spin_b) / (c->inverse_moment_a + c->inverse_moment_b);
     wanted = wanted > most ? most : wanted < -most ? -most : wanted;
-    m->spin_a -= m->inverse_moment_a * wanted;
-    m->spin_b += m->inverse_moment_b * wanted;
+    m->spin_a -= c->inverse_moment_a * wanted;
+    m->spin_b += c->inverse_moment_b * wanted;
 }
 
 /* Both normal rows of a contact at once, so that neither end of a box goes first: the linear complementarity problem of two
- * rows by its four cases (Catto's Box2D). wanted: the normal velocities. Returns the larger change relative to its mass. */
+ * rows by its four cases (Catto's Box2D). Returns the larger change of a point's velocity by its own impulse. */
 static inline double solve_pair(Contact *c, Meeting *m) {
-    Point *p = &c->point[0], *q = &c->point[1];
-    double k11 = p->mobility, k22 = q->mobility, k12 = c->coupling;
-    double vp = speed(m, c->normal, p->spin_na, p->spin_nb) - p->limit;
-    double vq = speed(m, c->normal, q->spin_na, q->spin_nb) - q->limit;
-    /* what the velocities would be without the impulses so far */
-    double bp = vp - k11 * p->impulse_n - k12 * q->impulse_n, bq = vq - k12 * p->impulse_n - k22 * q->impulse_n;
-    double x = (k12 * bq - k22 * bp) * c->pair_mass, y = (k12 * bp - k11 * bq) * c->pair_mass;
-    if (x < 0 || y < 0) {
-        x = -bp * p->mass_n, y = 0;
-        if (x < 0 || k12 * x + bq < 0) {
-            x = 0, y = -bq * q->mass_n;
-            if (y < 0 || k12 * y + bp < 0) x = y = 0;
-        }
+    Two k = c->mobility, k12 = both(c->coupling), had = c->impulse_n;
+    /* what the velocities would be, beyond the limits, without the impulses so far */
+    Two free = normal_speed(c, m) - c->limit - k * had - k12 * swapped(had);
+    Two impulse = (k12 * swapped(free) - swapped(k) * free) * both(c->pair_mass);
+    if (impulse[0] < 0 || impulse[1] < 0) {
+        Two alone = -free * c->mass_n;
+        if (alone[0] >= 0 && c->coupling * alone[0] + free[1] >= 0)
+            impulse = (Two){alone[0], 0};
+        else if (alone[1] >= 0 && c->coupling * alone[1] + free[0] >= 0)
+            impulse = (Two){0, alone[1]};
+        else
+            impulse = both(0);
     }
-    double dx = x - p->impulse_n, dy = y - q->impulse_n;
-    p->impulse_n = x;
-    q->impulse_n = y;
-    push(m, c->normal, p->spin_na, p->spin_nb, dx);
-    push(m, c->normal, q->spin_na, q->spin_nb, dy);
-    double ax = fabs(dx) * k11, ay = fabs(dy) * k22;
-    return ax > ay ? ax : ay;
+    Two change = impulse - had;
+    c->impulse_n = impulse;
+    push_normal(c, m, change);
+    change *= k;
+    return larger(fabs(change[0]), fabs(change[1]));
 }
 
 bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first) {
@@ -157,18 +167,15 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
         Contact *c = &contact[i];
         if (!first && heat[c->a] < pass - 1 && heat[c->b] < pass - 1) continue;
         Mover *a = &mover[c->a], *b = &mover[c->b];
-        Meeting m = meet(c, a, b);
-        double change = 0, pressed = 0;
-        if (c->count == 2 && c->pair_mass > 0) {
+        Meeting m = meet(a, b);
+        double change = 0;
+        if (c->pair_mass > 0) {
             change = solve_pair(c, &m);
         } else {
-            for (int32_t k = 0; k < c->count; k++) {
-                Point *p = &c->point[k];
-                double impulse = solve_normal(c, p, &m, p->limit);
-                change = larger(change, fabs(impulse) * p->mobility);
-            }
+            for (int32_t k = 0; k < c->count; k++)
+                change = larger(change, fabs(solve_normal(c, k, &m, c->limit[k])) * c->mobility[k]);
         }
-        for (int32_t k = 0; k < c->count; k++) pressed += c->point[k].impulse_n;
+        double pressed = sum_of(c->impulse_n);
         solve_friction(c, &m, pressed);
         if (c->rolling > 0) solve_rolling(c, &m, pressed);
         leave(&m, a, b);
@@ -188,15 +195,14 @@ bool contacts_foresee(Contact *contact, int32_t count, const Mover *mover, doubl
         const Mover *a = &mover[c->a], *b = &mover[c->b];
         if (larger(fabs(a->spin), fabs(b->spin)) * dt < FAST) continue;
         Vec apart = vsub(b->moved, a->moved), way = vscale(vsub(b->velocity, a->velocity), dt);
-        double turn_a = dt * a->spin, turn_b = dt * b->spin;
+        Meeting m = meet(a, b);
+        Two now = separation(c, a, b), linear = both(dt) * normal_speed(c, &m);
+        Two then = separation_at(c, vadd(apart, way), a->turned + dt * a->spin, b->turned + dt * b->spin);
         for (int32_t k = 0; k < c->count; k++) {
-            Point *p = &c->point[k];
-            double now = separation_at(c, k, apart, a->turned, b->turned);
-            double then = separation_at(c, k, vadd(apart, way), a->turned + turn_a, b->turned + turn_b);
-            double linear = vdot(way, c->normal) + turn_b * p->spin_nb - turn_a * p->spin_na;
-            double limit = -(larger(now, 0) + smaller(then - now - linear, 0)) / dt;
-            if (fabs(limit - p->limit) * dt <= c->fine) continue;
-            p->limit = limit;
+            double gap = larger(now[k], 0) + smaller(then[k] - now[k] - linear[k], 0);
+            double limit = gap > 0 ? -gap / dt : 0; /* never more: what pushed apart by a guess could gain energy */
+            if (fabs(limit - c->limit[k]) * dt <= c->fine) continue;
+            c->limit[k] = limit;
             if (a->inverse_mass > 0) heat[c->a] = pass;
             if (b->inverse_mass > 0) heat[c->b] = pass;
             any = true;
@@ -205,41 +211,27 @@ bool contacts_foresee(Contact *contact, int32_t count, const Mover *mover, doubl
     return any;
 }
 
-static inline double overlap(const Contact *c, int32_t k, const Mover *a, const Mover *b) {
-    double depth = -contact_separation(c, k, a, b) - c->slop;
-    return depth < c->slack ? depth : c->slack;
-}
-
-static inline void part(const Contact *c, const Point *p, Mover *a, Mover *b, double push) {
-    a->moved = vmad(a->moved, -push * c->inverse_mass_a, c->normal);
-    a->turned -= push * c->inverse_moment_a * p->spin_na;
-    b->moved = vmad(b->moved, push * c->inverse_mass_b, c->normal);
-    b->turned += push * c->inverse_moment_b * p->spin_nb;
-}
-
 /* Take a share of the overlaps out of the positions. */
 void contacts_part(Contact *contact, int32_t count, Mover *mover) {
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         Mover *a = &mover[c->a], *b = &mover[c->b];
-        if (c->count == 2 && c->pair_mass > 0) {
-            const Point *p = &c->point[0], *q = &c->point[1];
-            double dp = overlap(c, 0, a, b), dq = overlap(c, 1, a, b);
-            if (dp <= 0 && dq <= 0) continue;
-            double x = (dp * q->mobility - c->coupling * dq) * c->pair_mass;
-            double y = (dq * p->mobility - c->coupling * dp) * c->pair_mass;
-            if (x < 0 || y < 0) {
-                x = dp > dq ? dp * p->mass_n : 0;
-                y = dp > dq ? 0 : dq * q->mass_n;
-            }
-            part(c, p, a, b, RATE * x);
-            part(c, q, a, b, RATE * y);
-            continue;
+        Two depth = -separation(c, a, b) - both(c->slop);
+        if (depth[0] <= 0 && (depth[1] <= 0 || c->count < 2)) continue;
+        depth = (Two){smaller(depth[0], c->slack), smaller(depth[1], c->slack)};
+        Two push = {0, 0};
+        if (c->pair_mass > 0)
+            push = (depth * swapped(c->mobility) - both(c->coupling) * swapped(depth)) * both(c->pair_mass);
+        if (c->pair_mass == 0 || push[0] < 0 || push[1] < 0) { /* the deeper one alone */
+            push = depth * c->mass_n;
+            push[c->count < 2 || depth[0] > depth[1]] = 0;
         }
-        for (int32_t k = 0; k < c->count; k++) {
-            double depth = overlap(c, k, a, b);
-            if (depth > 0) part(c, &c->point[k], a, b, RATE * depth * c->point[k].mass_n);
-        }
+        push *= both(RATE);
+        double sum = sum_of(push);
+        a->moved = vmad(a->moved, -sum * c->inverse_mass_a, c->normal);
+        a->turned -= c->inverse_moment_a * sum_of(c->spin_na * push);
+        b->moved = vmad(b->moved, sum * c->inverse_mass_b, c->normal);
+        b->turned += c->inverse_moment_b * sum_of(c->spin_nb * push);
     }
 }
 
@@ -247,12 +239,11 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         for (int32_t k = 0; k < c->count; k++) {
-            PointPlace *at = &c->place[k];
-            if (at->approach == 0 || c->point[k].impulse_n <= 0) continue;
-            Meeting m = meet(c, &mover[c->a], &mover[c->b]);
-            solve_normal(c, &c->point[k], &m, -c->elasticity * at->approach);
+            if (c->approach[k] == 0 || c->impulse_n[k] <= 0) continue;
+            Meeting m = meet(&mover[c->a], &mover[c->b]);
+            solve_normal(c, k, &m, -c->elasticity * c->approach[k]);
             leave(&m, &mover[c->a], &mover[c->b]);
-            at->approach = 0;
+            c->approach[k] = 0;
         }
     }
 }

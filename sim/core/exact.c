@@ -298,7 +298,10 @@ int exact_take_back(Exact *e, double time) {
                 return SIM_OK; /* not yet */
     for (int32_t i = 1; i < e->world->body_count; i++)
         if (!is_tracked(e, i)) adopt(e, i, time);
-    return take_up(e, time);
+    e->from_crowd = true;
+    int status = take_up(e, time);
+    e->from_crowd = false;
+    return status;
 }
 
 /* The next thing to happen: a body's touch, or an island's end of motion. */

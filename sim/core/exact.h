@@ -61,6 +61,7 @@ typedef struct Exact {
     int32_t closed_capacity;
     PairList before, after;   /* pairs in contact, before an event and after it */
     bool *changed, *fresh;    /* bodies whose touches, or everything, have to be looked at again */
+    bool from_crowd;          /* it is the crowd's bodies that are taken up */
     double spent, spent_time; /* pairs looked at lately, for the budget */
     double steps, steps_time; /* of the integrator, likewise */
 } Exact;

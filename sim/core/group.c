@@ -389,7 +389,9 @@ int group_reform(Exact *e, double time) {
     bool crowded = e->world->body[g->member[0]].mode == MODE_CROWD || any_too_deep(e);
     if (status == SIM_OK && !crowded) status = find_contacts(e);
     if (status != SIM_OK) return status;
-    if (crowded || g->contact_count > (all_still(e) ? MOST_CONTACTS_REST : MOST_CONTACTS)) {
+    /* what rests in the crowd is put to rest there: the exact way need not find it out, at the cube of its contacts */
+    bool may_rest = !e->from_crowd && all_still(e);
+    if (crowded || g->contact_count > (may_rest ? MOST_CONTACTS_REST : MOST_CONTACTS)) {
         group_send_to_crowd(e, time);
         return SIM_OK;
     }
