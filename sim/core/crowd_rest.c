@@ -7,10 +7,10 @@
 
 #include "crowd_parts.h"
 
-static const double STILL_TIME = 0.25;    /* [s] */
+static const double STILL_TIME = 0.12;    /* [s] */
 static const double KNOCK = 0.1;          /* of the speed of falling by its own reach: what a woken body passes on */
 static const double NUDGE = 3;            /* times what counts as still: what wakes a neighbour */
-static const double STILL_SHARE = 1e-2;   /* of a body's reach: what it may move in that time */
+static const double STILL_SHARE = 7e-3;   /* of a body's reach: what it may move in that time */
 
 int rest_create(Crowd *crowd, const World *world) {
     size_t n = (size_t)world->body_count;
