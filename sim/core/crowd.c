@@ -6,7 +6,7 @@
 static const double FRAME = 1.0 / 60;  /* [s]: contacts are found anew this often */
 static const int32_t SUBSTEPS = 4;     /* of a frame */
 static const int32_t PASSES = 6;       /* between looks for new contacts, at most */
-static const int32_t LOOKS = 3;        /* of a substep, at most */
+static const int32_t LOOKS = 6;        /* of a substep, at most */
 
 Crowd *crowd_create(const World *world) {
     Crowd *crowd = calloc(1, sizeof *crowd);
@@ -56,10 +56,10 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     Mover *mover = crowd->mover;
     double threshold = 4 * dt * vlength(world->gravity);
     int status = SIM_OK;
-    touch_refresh(crowd, world, left, threshold);
+    touch_refresh(crowd, world, left);
     accelerate(crowd, world, dt);
-    contacts_measure(crowd->contact, crowd->contact_count, mover, threshold);
-    contacts_warm_start(crowd->contact, crowd->contact_count, mover, dt);
+    bool bounces = contacts_measure(crowd->contact, crowd->contact_count, mover, threshold);
+    contacts_warm_start(crowd->contact, crowd->contact_count, mover);
     bool found = true;
     for (int32_t look = 0; found && look < LOOKS && status == SIM_OK; look++) {
         bool heated = true;
@@ -69,7 +69,7 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
             heated = contacts_solve(crowd->contact, crowd->contact_count, mover, dt, crowd->heat, crowd->passes,
                                     look == 0 && pass == 0);
         }
-        status = touch_near(crowd, world, left, dt, threshold, &found);
+        status = touch_near(crowd, world, left, dt, threshold, &found, &bounces);
         if (contacts_foresee(crowd->contact, crowd->contact_count, mover, dt, crowd->heat, crowd->passes)) found = true;
     }
     if (status != SIM_OK) return status;
@@ -77,10 +77,10 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     pivots_join(&crowd->pivots, mover, crowd->contact_count == 0 ? 1 / dt : 0); /* with contacts it could feed a jam */
     pivots_factor(&crowd->pivots, mover);
     crowd->moment++;
-    contacts_part(crowd->contact, crowd->contact_count, mover);
+    contacts_part(crowd->contact, crowd->contact_count, mover, dt);
     pivots_join(&crowd->pivots, mover, 0);
     pivots_solve(&crowd->pivots, mover);
-    contacts_bounce(crowd->contact, crowd->contact_count, mover);
+    if (bounces) contacts_bounce(crowd->contact, crowd->contact_count, mover);
     world->profile.crowd_steps++;
     world->profile.crowd_contacts += crowd->contact_count;
     return SIM_OK;
@@ -109,6 +109,7 @@ static int frame(Crowd *crowd, World *world, double dt) {
     status = pivots_load(&crowd->pivots, world, crowd->mover);
     if (status != SIM_OK) return status;
     pivots_factor(&crowd->pivots, crowd->mover);
+    contacts_limit(crowd->contact, crowd->contact_count, crowd->mover, h);
     for (int32_t k = 0; k < substeps && status == SIM_OK; k++) status = substep(crowd, world, dt - k * h, h);
     if (status != SIM_OK) return status;
     status = touch_finish(crowd, world, dt);

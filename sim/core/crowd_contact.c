@@ -83,7 +83,7 @@ static bool slow(const World *world, int32_t body) {
 /* In their contact a body counts as no more than so many times as heavy as the other: sequential impulses take as many
  * passes as that to hold the heavy on the light, and a blow is hardly different. */
 static void set_masses(Contact *c, const Mover *a, const Mover *b) {
-    static const double HEAVIER = 100;
+    static const double HEAVIER = 30;
     double least_a = b->inverse_mass / HEAVIER, least_b = a->inverse_mass / HEAVIER;
     double scale_a = a->inverse_mass > 0 && a->inverse_mass < least_a ? least_a / a->inverse_mass : 1;
     double scale_b = b->inverse_mass > 0 && b->inverse_mass < least_b ? least_b / b->inverse_mass : 1;

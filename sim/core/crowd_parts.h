@@ -80,8 +80,8 @@ int touch_create(Crowd *crowd, const World *world);
 void touch_destroy(Crowd *crowd);
 void touch_place(Crowd *crowd, const World *world, int32_t body);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
-void touch_refresh(Crowd *crowd, World *world, double left, double threshold);
-int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
+void touch_refresh(Crowd *crowd, World *world, double left);
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found, bool *bounces);
 int touch_finish(Crowd *crowd, const World *world, double dt);
 
 /* crowd_rest.c */

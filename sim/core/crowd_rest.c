@@ -11,6 +11,7 @@ static const double STILL_TIME = 0.12;    /* [s] */
 static const double KNOCK = 0.1;          /* of the speed of falling by its own reach: what a woken body passes on */
 static const double NUDGE = 3;            /* times what counts as still: what wakes a neighbour */
 static const double STILL_SHARE = 7e-3;   /* of a body's reach: what it may move in that time */
+static const double SPEEDING = 0.4;       /* of the speed that would take it so far */
 
 int rest_create(Crowd *crowd, const World *world) {
     size_t n = (size_t)world->body_count;
@@ -124,6 +125,14 @@ static void find_islands(Crowd *crowd, const World *world) {
     }
 }
 
+/* Whether a body goes so fast that it did not do so all the time that it has been still: what begins to slide is not at
+ * rest, though it has not gone far yet. */
+static bool speeds_up(const Crowd *crowd, const World *world, int32_t i) {
+    const Body *body = &world->body[i];
+    double speed = vlength(body->velocity) + body->reach * fabs(body->spin);
+    return speed * STILL_TIME > SPEEDING * still_distance(world, body, crowd->tolerance);
+}
+
 /* How long the islands have been still, each with what presses on it. */
 static void find_island_times(Crowd *crowd, const World *world) {
     double *time = crowd->island_time;
@@ -131,7 +140,7 @@ static void find_island_times(Crowd *crowd, const World *world) {
     for (int32_t i = 0; i < world->body_count; i++) {
         if (!crowd_moves(world, i)) continue;
         int32_t r = root(crowd->island, i);
-        time[r] = smaller(time[r], crowd->touched[i] ? crowd->still_time[i] : 0);
+        time[r] = smaller(time[r], crowd->touched[i] && !speeds_up(crowd, world, i) ? crowd->still_time[i] : 0);
     }
     for (int32_t i = 0; i < crowd->contact_count; i++) {
         const Contact *c = &crowd->contact[i];

@@ -9,7 +9,6 @@
 #include "broad.h"
 
 static const double RATE = 0.6; /* share of an overlap that a pass drives out */
-static const double OVER = 1.25; /* successive over-relaxation (Young 1950): a blow goes through a pile in fewer passes */
 
 static inline Two two(Vec v) { return (Two){v.x, v.y}; }
 static inline Two both(double x) { return (Two){x, x}; }
@@ -84,14 +83,22 @@ static inline Two separation(const Contact *c, const Mover *a, const Mover *b) {
 
 Two contact_separation(const Contact *c, const Mover *a, const Mover *b) { return separation(c, a, b); }
 
-void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double dt) {
-    double inverse_dt = 1 / dt;
+static inline void set_limit(Contact *c, Two gap, double inverse_dt) {
+    c->limit = (Two){gap[0] > 0 ? -gap[0] * inverse_dt : 0, gap[1] > 0 ? -gap[1] * inverse_dt : 0};
+}
+
+void contacts_limit(Contact *contact, int32_t count, const Mover *mover, double dt) {
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
+        set_limit(c, separation(c, &mover[c->a], &mover[c->b]), 1 / dt);
+    }
+}
+
+void contacts_warm_start(Contact *contact, int32_t count, Mover *mover) {
+    for (int32_t i = 0; i < count; i++) {
+        Contact *c = &contact[i];
+        if (c->impulse_n[0] == 0 && c->impulse_n[1] == 0 && c->impulse_t == 0) continue;
         Mover *a = &mover[c->a], *b = &mover[c->b];
-        Two gap = separation(c, a, b);
-        c->limit = (Two){gap[0] > 0 ? -gap[0] * inverse_dt : 0, gap[1] > 0 ? -gap[1] * inverse_dt : 0};
-        if (sum_of(c->impulse_n) == 0 && c->impulse_t == 0) continue;
         Meeting m = meet(a, b);
         push_normal(c, &m, c->impulse_n);
         push_tangent(c, &m, c->impulse_t);
@@ -99,14 +106,22 @@ void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double d
     }
 }
 
-void contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold) {
+bool contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold) {
+    bool any = false;
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         if (c->elasticity <= 0) continue;
+        c->approach = both(0);
+        if (c->impulse_n[0] > 0 && (c->impulse_n[1] > 0 || c->count < 2)) continue;
         Meeting m = meet(&mover[c->a], &mover[c->b]);
         Two v = normal_speed(c, &m);
-        for (int32_t k = 0; k < c->count; k++) c->approach[k] = c->impulse_n[k] <= 0 && v[k] < -threshold ? v[k] : 0;
+        for (int32_t k = 0; k < c->count; k++) {
+            if (c->impulse_n[k] > 0 || v[k] >= -threshold) continue;
+            c->approach[k] = v[k];
+            any = true;
+        }
     }
+    return any;
 }
 
 static inline void solve_friction(Contact *c, Meeting *m, double pressed) {
@@ -119,9 +134,9 @@ static inline void solve_friction(Contact *c, Meeting *m, double pressed) {
     push_tangent(c, m, impulse);
 }
 
-/* Bring the normal velocity of a point to what is wanted, or by `over` as much, without pulling. Returns the impulse. */
-static inline double solve_normal(Contact *c, int32_t k, Meeting *m, double wanted, double over) {
-    double sum = c->impulse_n[k] - over * c->mass_n[k] * (normal_speed(c, m)[k] - wanted);
+/* Bring the normal velocity of a point to what is wanted, without pulling. Returns the impulse. */
+static inline double solve_normal(Contact *c, int32_t k, Meeting *m, double wanted) {
+    double sum = c->impulse_n[k] - c->mass_n[k] * (normal_speed(c, m)[k] - wanted);
     sum = sum > 0 ? sum : 0;
     double impulse = sum - c->impulse_n[k];
     if (impulse == 0) return 0;
@@ -155,8 +170,6 @@ static inline double solve_pair(Contact *c, Meeting *m) {
         else
             impulse = both(0);
     }
-    impulse = had + both(OVER) * (impulse - had);
-    impulse = (Two){larger(impulse[0], 0), larger(impulse[1], 0)};
     Two change = impulse - had;
     c->impulse_n = impulse;
     push_normal(c, m, change);
@@ -176,7 +189,7 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
             change = solve_pair(c, &m);
         } else {
             for (int32_t k = 0; k < c->count; k++)
-                change = larger(change, fabs(solve_normal(c, k, &m, c->limit[k], OVER)) * c->mobility[k]);
+                change = larger(change, fabs(solve_normal(c, k, &m, c->limit[k])) * c->mobility[k]);
         }
         double pressed = sum_of(c->impulse_n);
         solve_friction(c, &m, pressed);
@@ -203,7 +216,7 @@ bool contacts_foresee(Contact *contact, int32_t count, const Mover *mover, doubl
         Two then = separation_at(c, vadd(apart, way), a->turned + dt * a->spin, b->turned + dt * b->spin);
         for (int32_t k = 0; k < c->count; k++) {
             double gap = larger(now[k], 0) + smaller(then[k] - now[k] - linear[k], 0);
-            double limit = gap > 0 ? -gap / dt : 0; /* never more: what pushed apart by a guess could gain energy */
+            double limit = gap > 0 ? -gap / dt : 0; /* never more: to push by a guess could gain energy */
             if (fabs(limit - c->limit[k]) * dt <= c->fine) continue;
             c->limit[k] = limit;
             if (a->inverse_mass > 0) heat[c->a] = pass;
@@ -214,12 +227,14 @@ bool contacts_foresee(Contact *contact, int32_t count, const Mover *mover, doubl
     return any;
 }
 
-/* Take a share of the overlaps out of the positions. */
-void contacts_part(Contact *contact, int32_t count, Mover *mover) {
+/* Take a share of the overlaps out of the positions, and set the limits of the next substep. */
+void contacts_part(Contact *contact, int32_t count, Mover *mover, double dt) {
+    double inverse_dt = 1 / dt;
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
         Mover *a = &mover[c->a], *b = &mover[c->b];
-        Two depth = -separation(c, a, b) - both(c->slop);
+        Two gap = separation(c, a, b), depth = -gap - both(c->slop);
+        set_limit(c, gap, inverse_dt);
         if (depth[0] <= 0 && (depth[1] <= 0 || c->count < 2)) continue;
         depth = (Two){smaller(depth[0], c->slack), smaller(depth[1], c->slack)};
         Two push = {0, 0};
@@ -244,7 +259,7 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
         for (int32_t k = 0; k < c->count; k++) {
             if (c->approach[k] == 0 || c->impulse_n[k] <= 0) continue;
             Meeting m = meet(&mover[c->a], &mover[c->b]);
-            solve_normal(c, k, &m, -c->elasticity * c->approach[k], 1);
+            solve_normal(c, k, &m, -c->elasticity * c->approach[k]);
             leave(&m, &mover[c->a], &mover[c->b]);
             c->approach[k] = 0;
         }

@@ -52,9 +52,13 @@ typedef struct Contact {
 /* How far apart the two surfaces are now, at each point. */
 Two contact_separation(const Contact *contact, const Mover *a, const Mover *b);
 
-/* Once for each contact of a substep, before it is solved. */
-void contacts_warm_start(Contact *contact, int32_t count, Mover *mover, double dt);
-void contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold);
+/* Before contacts that are new are solved: how fast their points may approach where the bodies are now. */
+void contacts_limit(Contact *contact, int32_t count, const Mover *mover, double dt);
+
+/* Once for each contact of a substep, before it is solved: the impulses of the substep before, and how fast points that are
+ * about to touch approach.  Whether any does faster than the threshold, and is to bounce. */
+void contacts_warm_start(Contact *contact, int32_t count, Mover *mover);
+bool contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold);
 
 /* One pass.  heat: by mover, the last pass that changed it noticeably; a pass other than the first of a substep goes only
  * to contacts of bodies that the pass before it heated.  Whether this pass heated any. */
@@ -63,7 +67,9 @@ bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, in
 /* At the velocities that were found bodies may turn so fast that gaps close by the second order of it: then they may approach
  * less fast.  Whether that changed anything; the bodies are hot. */
 bool contacts_foresee(Contact *contact, int32_t count, const Mover *mover, double dt, int64_t *heat, int64_t pass);
-void contacts_part(Contact *contact, int32_t count, Mover *mover);
+
+/* Take a share of the overlaps out of the positions, and set the limits of the next substep. */
+void contacts_part(Contact *contact, int32_t count, Mover *mover, double dt);
 void contacts_bounce(Contact *contact, int32_t count, Mover *mover);
 
 #endif

@@ -346,7 +346,7 @@ int touch_frame(Crowd *crowd, World *world, double dt, double substep) {
 }
 
 /* Find the points anew of contacts whose bodies have turned or shifted a good deal since. */
-void touch_refresh(Crowd *crowd, World *world, double left, double threshold) {
+void touch_refresh(Crowd *crowd, World *world, double left) {
     for (int32_t i = 0; i < crowd->contact_count; i++) {
         Contact *c = &crowd->contact[i];
         const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
@@ -360,7 +360,7 @@ void touch_refresh(Crowd *crowd, World *world, double left, double threshold) {
                       closing(crowd, world, &near, left) + c->slack, &m);
         Record old = contact_record(c);
         contact_set_points(crowd, world, c, &m, &old);
-        contacts_measure(c, 1, crowd->mover, threshold);
+        contacts_limit(c, 1, crowd->mover, crowd->substep);
     }
 }
 
@@ -457,8 +457,8 @@ static bool look_along(Crowd *crowd, World *world, Near *near, double dt, double
 }
 
 /* After the passes: the near pairs that may touch in the substep at the velocities found become contacts.  Whether there
- * were any; they are hot. */
-int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found) {
+ * were any, and whether any is to bounce; they are hot. */
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found, bool *bounces) {
     int status = follow_strays(crowd, world, left, substep);
     if (status != SIM_OK) return status;
     int32_t kept = 0, before = crowd->contact_count;
@@ -481,8 +481,10 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     crowd->near_count = kept;
     *found = crowd->contact_count > before;
     if (!*found) return SIM_OK;
-    contacts_measure(crowd->contact + before, crowd->contact_count - before, crowd->mover, threshold);
-    contacts_warm_start(crowd->contact + before, crowd->contact_count - before, crowd->mover, substep);
+    int32_t more = crowd->contact_count - before;
+    contacts_limit(crowd->contact + before, more, crowd->mover, substep);
+    *bounces = contacts_measure(crowd->contact + before, more, crowd->mover, threshold) || *bounces;
+    contacts_warm_start(crowd->contact + before, more, crowd->mover);
     return SIM_OK;
 }
 
