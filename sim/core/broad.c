@@ -84,7 +84,8 @@ int sweep_pairs(Sweep *sweep, const Box *box, const bool *moving) {
         while (end < count && lows[end] <= high) end++;
         if (pair_room(sweep, end - k) != SIM_OK) return SIM_OUT_OF_MEMORY;
         Pair *pair = sweep->pair + sweep->pair_count;
-        for (int32_t l = k + 1; l < end; l++) { /* every one is written, and kept by counting it: no branch to mispredict */
+        for (int32_t l = k + 1; l < end;
+             l++) { /* every one is written, and kept by counting it: no branch to mispredict */
             int32_t j = sweep->order[l];
             *pair = (Pair){i < j ? i : j, i < j ? j : i};
             pair += (lows_across[l] <= high_across) & (highs_across[l] >= low_across) & (moves[k] | moves[l]);

@@ -17,7 +17,9 @@ Crowd *crowd_create(const World *world) {
     crowd->active = calloc((size_t)world->body_count, sizeof *crowd->active);
     crowd->heat = calloc((size_t)world->body_count, sizeof *crowd->heat);
     crowd->mover = calloc((size_t)world->body_count, sizeof *crowd->mover);
-    bool made = crowd->mover && crowd->active && crowd->heat && pivots_create(&crowd->pivots, world) == SIM_OK;
+    crowd->pressed = calloc((size_t)world->body_count, sizeof *crowd->pressed);
+    bool made = crowd->mover && crowd->active && crowd->heat && crowd->pressed &&
+                pivots_create(&crowd->pivots, world) == SIM_OK;
     if (!made || touch_create(crowd, world) != SIM_OK || rest_create(crowd, world) != SIM_OK) {
         crowd_destroy(crowd);
         return NULL;
@@ -32,6 +34,7 @@ void crowd_destroy(Crowd *crowd) {
     free(crowd->mover);
     free(crowd->active);
     free(crowd->heat);
+    free(crowd->pressed);
     pivots_destroy(&crowd->pivots);
     free(crowd);
 }
@@ -50,6 +53,15 @@ static void move(Crowd *crowd, double dt) {
         m->moved = vmad(m->moved, dt, m->velocity);
         m->turned += dt * m->spin;
     }
+}
+
+static void find_pressed(Crowd *crowd) {
+    for (int32_t k = 0; k < crowd->active_count; k++) crowd->pressed[crowd->active[k]] = false;
+    for (int32_t i = 0; i < crowd->contact_count; i++) {
+        const Contact *c = &crowd->contact[i];
+        if (contact_presses(c)) crowd->pressed[c->a] = crowd->pressed[c->b] = true;
+    }
+    crowd->pressed[0] = false;
 }
 
 static int substep(Crowd *crowd, World *world, double left, double dt) {
@@ -74,11 +86,12 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     }
     if (status != SIM_OK) return status;
     move(crowd, dt);
-    pivots_join(&crowd->pivots, mover, crowd->contact_count == 0 ? 1 / dt : 0); /* with contacts it could feed a jam */
+    if (crowd->pivots.count > 0) find_pressed(crowd);
+    pivots_join(&crowd->pivots, mover, 1 / dt, crowd->pressed);
     pivots_factor(&crowd->pivots, mover);
     crowd->moment++;
     contacts_part(crowd->contact, crowd->contact_count, mover, dt);
-    pivots_join(&crowd->pivots, mover, 0);
+    pivots_join(&crowd->pivots, mover, 0, NULL);
     pivots_solve(&crowd->pivots, mover);
     if (bounces) contacts_bounce(crowd->contact, crowd->contact_count, mover);
     world->profile.crowd_steps++;

@@ -57,6 +57,7 @@ struct Crowd {
     int32_t contact_count, contact_capacity;
     Memory memory;
     Pivots pivots;
+    bool *pressed; /* by body: a contact presses on it in the substep; not looked for without pivots */
     /* crowd_rest.c */
     Vec *still_position; /* by body: where it was when it last moved */
     double *still_angle, *still_time;

@@ -199,7 +199,7 @@ static void shift(Mover *m, Vec arm, Vec impulse, double rate) {
     m->spin += rate * angle;
 }
 
-void pivots_join(Pivots *pivots, Mover *mover, double rate) {
+void pivots_join(Pivots *pivots, Mover *mover, double rate, const bool *pressed) {
     if (pivots->count == 0) return;
     for (int32_t i = 0; i < pivots->count; i++) {
         const Pivot *p = &pivots->pivot[i];
@@ -214,7 +214,8 @@ void pivots_join(Pivots *pivots, Mover *mover, double rate) {
     for (int32_t i = 0; i < pivots->count; i++) {
         const Pivot *p = &pivots->pivot[i];
         Vec j = vec(pivots->right[2 * i], pivots->right[2 * i + 1]);
-        shift(&mover[p->a], p->arm_a, vscale(j, -1), rate);
-        shift(&mover[p->b], p->arm_b, j, rate);
+        double own = pressed && (pressed[p->a] || pressed[p->b]) ? 0 : rate;
+        shift(&mover[p->a], p->arm_a, vscale(j, -1), own);
+        shift(&mover[p->b], p->arm_b, j, own);
     }
 }

@@ -37,7 +37,8 @@ void pivots_solve(Pivots *pivots, Mover *mover);
 
 /* Bring the two points of every pivot together, by impulses as they were directed when the matrix was made.  They change the
  * velocities too by `rate` times the way [1/s]: after a step of 1 / rate from there this keeps the energy of a swing (RATTLE,
- * Andersen 1983), with 0 it only mends. */
-void pivots_join(Pivots *pivots, Mover *mover, double rate);
+ * Andersen 1983), with 0 it only mends, as it does at pivots of movers that are `pressed`, if that is not NULL: there it
+ * could feed a jam. */
+void pivots_join(Pivots *pivots, Mover *mover, double rate, const bool *pressed);
 
 #endif

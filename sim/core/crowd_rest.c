@@ -144,8 +144,7 @@ static void find_island_times(Crowd *crowd, const World *world) {
     }
     for (int32_t i = 0; i < crowd->contact_count; i++) {
         const Contact *c = &crowd->contact[i];
-        bool presses = c->impulse_n[0] > 0 || c->impulse_n[1] > 0;
-        if (!presses || !crowd_moves(world, c->a) || !crowd_moves(world, c->b)) continue;
+        if (!contact_presses(c) || !crowd_moves(world, c->a) || !crowd_moves(world, c->b)) continue;
         int32_t a = root(crowd->island, c->a), b = root(crowd->island, c->b);
         time[a] = smaller(time[a], crowd->still_time[c->b]);
         time[b] = smaller(time[b], crowd->still_time[c->a]);

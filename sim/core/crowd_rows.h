@@ -49,6 +49,8 @@ typedef struct Contact {
     uint64_t key; /* the pieces */
 } Contact;
 
+static inline bool contact_presses(const Contact *c) { return c->impulse_n[0] > 0 || c->impulse_n[1] > 0; }
+
 /* How far apart the two surfaces are now, at each point. */
 Two contact_separation(const Contact *contact, const Mover *a, const Mover *b);
 
