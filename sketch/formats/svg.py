@@ -31,7 +31,7 @@ NO_INK = ("text", "image", "foreignObject")  # seen, but no lines
 UNSEEN = ("clipPath", "mask", "marker", "pattern", "title", "desc", "metadata")
 
 NAME = re.compile(r"[A-Za-z][\w.-]*")  # what is left of another program's own element may be none
-NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
+NUMBER = r"[+-]?(\d++\.?\d*+|\.\d++)([eE][+-]?\d++)?"
 LENGTH = re.compile(NUMBER + r"\s*(px|pt|pc|mm|cm|in|em|ex|ch|rem|vw|vh|%)?")
 # These two match the longest beginning that is right, and so never need to go back.
 PATH = re.compile(r"\s*([mM]([\s,]*(" + NUMBER + r"|[MmZzLlHhVvCcSsQqTtAa]))*[\s,]*)?")
@@ -53,7 +53,8 @@ LENGTHS = {
     "ellipse": ("cx", "cy", "rx", "ry"),
     "line": ("x1", "y1", "x2", "y2"),
 }
-MAX_ELEMENTS = 100_000
+MAX_ELEMENTS = 20_000
+MAX_LENGTH = 2_000_000  # characters of all paths: a page of 200 strokes of 500 points has less
 MAX_DEPTH = 400
 STEP = 3.0  # pixels between the points of a curve
 MOST = 400  # points of one curve
@@ -65,6 +66,9 @@ def read(data: bytes) -> Sketch:
     Raises InputError with the line of what is wrong, and where svgelements is not installed.
     """
     root = parse_xml(data)
+    length = sum(len(e.attributes.get(name, "")) for e in root.walk() for name in ("d", "points"))
+    if length > MAX_LENGTH:
+        raise InputError("", f"{length} characters of paths; at most {MAX_LENGTH} are taken", kind="size")
     for element in root.walk():
         _check(element)
     _Uses(root).count(root, 0)
