@@ -12,9 +12,9 @@ from itertools import combinations
 import numpy as np
 
 from sketch.outlines import Chain
-from sketch.pieces import LOOSE, Page, Piece, Point
+from sketch.pieces import LOOSE, Array, Page, Piece, Point
 
-__all__ = ["arrow_groups", "closing_chains", "crosses"]
+__all__ = ["arrow_groups", "closing_chains", "closing_ink", "crosses"]
 
 MOST_PARTS = 6  # of one outline: people draw a box in one to five strokes
 MOST_STEPS = 400  # from one piece, of chains that may close
@@ -22,6 +22,9 @@ MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length
 MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
 MOST_OPEN = 4  # and of those with wide gaps, which are many in a tangle
 WIDE = 0.1  # of a chain's ink
+ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
+BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
+DETOUR = 1.5  # of that distance: the longest way over other ink
 HEADS = 4  # strokes near a shaft's end that are tried as its head
 
 
@@ -57,6 +60,27 @@ def closing_chains(page: Page, start: int) -> list[Chain]:
     close = sum(gaps <= WIDE * ink for gaps, ink, _ in tightest)
     wide = MOST_CHAINS if page.rivals else MOST_OPEN
     return [chain for _, _, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]
+
+
+def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
+    """Other pieces that an open one ends on with both ends, and their ink between these: a side that is shared."""
+    if p.length < BENT * p.gap:
+        return
+    ends, reach = np.array(p.ends), ENDS_ON * p.length
+    low, high = (ends.min(axis=0) - reach).tolist(), (ends.max(axis=0) + reach).tolist()
+    for q in page.touching(*low, *high):
+        if q is p or not page.apart(q.index, (p.index,)):
+            continue
+        ink = page.strokes.samples[q.index]
+        gaps = np.hypot(*(ink[:, None] - ends).transpose(2, 0, 1))
+        to, at = gaps.argmin(axis=0).tolist()  # from its last end, over the other's ink, to its first
+        if gaps.min(axis=0).max() > reach + q.length / len(ink) / 2:
+            continue
+        count, step = abs(at - to), 1 if at > to else -1
+        if q.gap < ENDS_ON * q.length and 2 * count > len(ink):
+            count, step = len(ink) - count, -step
+        if 0 < count * q.length / len(ink) < DETOUR * p.gap:
+            yield q.index, ink[(to + step * np.arange(count + 1)) % len(ink)]
 
 
 def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:

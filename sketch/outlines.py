@@ -29,6 +29,7 @@ FREEFORM = 32.0  # nats that an outline of any course, a hill or a cloud, is rar
 ARC = 9.0  # and nats to say each of the arcs that it goes in: a bow beside the corner
 COURSE = 32  # corners that it is drawn with
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.c
+SHARED = 10.0  # nats that an outline is rarer of which a side is another's
 GAP = 4.0  # nats for each observation that an outline lacks
 CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
 LEAST_AXIS = 0.002  # of the page: thinner outlines are judged as if they were this thick
@@ -37,16 +38,23 @@ _ANGLES = np.linspace(0, 2 * math.pi, 24, endpoint=False)
 _RING = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
 
 
-def read_outline(page: Page, chain: Chain) -> list[Fitted]:
-    """The readings of pieces that go once around, one of each kind."""
+def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fitted]:
+    """The readings of pieces that go once around, one of each kind.
+
+    over: other ink that closes them, from the last end to the first [pixels], (n, 2): a side that is shared.
+    """
     pieces = page.pieces
     names = tuple(sorted(i for i, _ in chain))
     count = sum(pieces[i].observations for i in names)
     parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in chain]
+    shared = 0.0
+    if over is not None:
+        parts.append(over)
+        shared = SHARED
     fit = fit_closed(
         parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(unread(pieces[i]) for i in names)
     )
-    gaps = GAP * count * fit.gap / fit.ink
+    gaps = GAP * count * fit.gap / fit.ink + shared
     b = fit.back
     scale = math.sqrt(abs(float(b[0, 0] * b[1, 1] - b[0, 1] * b[1, 0])))
     said = [2 * k * CORNER - USUAL.get(k, 0.0) for k in range(MOST_SIDES + 1)]

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.grouping import arrow_groups, closing_chains, crosses
+from sketch.grouping import arrow_groups, closing_chains, closing_ink, crosses
 from sketch.marks import read_arrow, read_bar, read_cross, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
 from sketch.pieces import End, Looked, Page, Piece
@@ -181,6 +181,8 @@ class Proposals:
                 found = fitted(key, partial(read_outline, page, chain))
             out += found
             out += _again(page, found, self.free)
+        for j, ink in () if alone.complete else closing_ink(page, p):
+            out += fitted(((p.index, j), "over"), partial(read_outline, page, [(p.index, False)], ink))
         out += _kept(read_bar(p))
         if not alone.plain:
             for names in crosses(page, p):

@@ -160,3 +160,15 @@ def test_hooks_and_overshoots_do_not_move_a_side() -> None:
         assert len(found.outline) == 4
         assert low == pytest.approx([250, 210], abs=12)
         assert high == pytest.approx([550, 390], abs=12)
+
+
+@hands
+def test_bodies_that_share_a_drawn_side(hand, rng) -> None:
+    from dataclasses import replace
+
+    first = outline(box(300, 300, 200, 140), hand, rng)
+    beside = line([(400, 232), (540, 230), (540, 370), (400, 368)], replace(hand, parts=(1,)), rng)
+    bodies = read(first, beside).scene.bodies
+    assert [len(b.strokes or []) for b in bodies] == [len(first), 1]
+    for body, x in zip(bodies, (300, 470), strict=True):
+        assert body.position == pytest.approx((x / 128, -300 / 128), abs=16 / 128)

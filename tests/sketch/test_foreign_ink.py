@@ -1,0 +1,91 @@
+"""Ink that has no meaning here: by itself it is nothing, and beside a machine it changes nothing."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pages import page
+from test_machines import cart, meaning
+
+from sketch.ink import Sketch, Stroke
+from sketch.kernel import depth
+from sketch.recognize import Recognition, recognize
+from sketch.synthetic import HANDS, curve, line
+
+HAND = HANDS["neat"]
+Path = list[tuple[float, float]]
+
+
+def spiral(turns: float, count: int = 60) -> Path:
+    t = np.linspace(0, 2 * math.pi * turns, count)
+    r = 0.1 + 0.4 * t / t[-1]
+    return [(0.5 + a * math.cos(b), 0.5 + a * math.sin(b)) for a, b in zip(r, t, strict=True)]
+
+
+def wave(turns: float) -> Path:
+    return [(x, 0.5 + 0.25 * math.sin(2 * math.pi * turns * x)) for x in np.linspace(0, 1, 50)]
+
+
+def coil(turns: int) -> Path:
+    t = np.linspace(0, 2 * math.pi * turns, 30 * turns)
+    return [(0.1 + 0.8 * b / t[-1] + 0.14 * math.cos(b), 0.5 + 0.14 * math.sin(b)) for b in t]
+
+
+def question_mark() -> Path:
+    bow = [
+        (0.5 + 0.28 * math.cos(a), 0.3 + 0.28 * math.sin(a)) for a in np.linspace(-math.pi, 0.5 * math.pi, 24)
+    ]
+    return [*bow, (0.5, 0.95)]
+
+
+FOREIGN: dict[str, list[Path]] = {
+    "v": [[(0.2, 0), (0.5, 1), (0.8, 0)]],
+    "caret": [[(0.2, 1), (0.5, 0), (0.8, 1)]],
+    "zigzag": [[(0, 0.3), (0.2, 0.7), (0.4, 0.3), (0.6, 0.7), (0.8, 0.3), (1, 0.7)]],
+    "z": [[(0, 0), (1, 0), (0, 1), (1, 1)]],
+    "question mark": [question_mark()],
+    "wave": [wave(2)],
+    "spiral": [spiral(2.5)],
+    "coil": [coil(4)],
+    "bracket": [[(0.8, 0), (0.3, 0), (0.3, 1), (0.8, 1)]],
+    "T": [[(0, 0), (1, 0)], [(0.5, 0), (0.5, 1)]],
+    "H": [[(0, 0), (0, 1)], [(1, 0), (1, 1)], [(0, 0.5), (1, 0.5)]],
+    "asterisk": [[(0.1, 0.1), (0.9, 0.9)], [(0.9, 0.1), (0.1, 0.9)], [(0, 0.5), (1, 0.5)]],
+}
+
+
+def drawn(name: str, x: float, y: float, size: float, rng: np.random.Generator) -> list[np.ndarray]:
+    return [
+        s for path in FOREIGN[name] for s in line([(x + size * u, y + size * v) for u, v in path], HAND, rng)
+    ]
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+@pytest.mark.parametrize("seed", range(3))
+def test_foreign_ink_changes_nothing(name: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    alone = page(drawn(name, 500, 300, 130, rng))
+    assert recognize(alone).scene.bodies == []
+    sketch = cart(HAND, rng)
+    ink = drawn(name, 1080, 90, 100, rng)
+    first = len(sketch.strokes)
+    beside = Sketch([*sketch.strokes, *map(Stroke, ink)], sketch.width, sketch.height)
+    scene = recognize(beside).scene
+    assert meaning(recognize(sketch)) == meaning(Recognition(sketch, scene, []))
+    notes = " ".join(scene.notes)
+    assert all(str(s) in notes for s in range(first, first + len(ink)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_closed_course_is_a_body_as_it_was_drawn(seed: int) -> None:
+    """A heart is no triangle: its polygon follows the ink."""
+    t = np.linspace(0, 2 * math.pi, 80)
+    x, y = 16 * np.sin(t) ** 3, 13 * np.cos(t) - 5 * np.cos(2 * t) - 2 * np.cos(3 * t) - np.cos(4 * t)
+    path = np.stack([500 + 6 * x, 300 - 6 * y], axis=1)
+    scene = recognize(page(curve(path, HAND, np.random.default_rng(seed)))).scene
+    (heart,) = scene.bodies
+    outline = np.ascontiguousarray((np.array(heart.shape.vertices) + heart.position) * [128, -128])
+    assert len(outline) > 6
+    assert max(abs(depth(x, y, outline)) for x, y in path.tolist()) < 192 / 10
