@@ -24,6 +24,7 @@ Row = list[float]
 VALUE = re.compile(
     r"""\s*(?P<order>[!'"]?)\s*(?P<value>[+-]?\s*(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|-?\#[0-9A-Fa-f]+|[TF*?])"""
 )
+NUMBERS = re.compile(r"[\d\s.,eE+-]*")
 ORDERS = {"!": 0, "'": 1, '"': 2}
 MILLISECONDS = {"s": 1e3, "ms": 1.0, "us": 1e-3}
 PER_CENTIMETRE = {"1/cm": 1.0, "1/mm": 10.0, "1/in": 1 / 2.54, "1/m": 0.01, "1/pt": 72 / 2.54}
@@ -168,8 +169,30 @@ def _rows(trace: _Trace) -> list[Row]:
     columns = {channel.name: k for k, channel in enumerate(trace.format)}
     wanted = [(columns[name], trace.format[columns[name]].factor) for name in "XYT" if name in columns]
     least = sum(not channel.intermittent for channel in trace.format)
-    state = [_Column() for _ in trace.format]
     rows: list[Row] = []
+    for values in _explicit(trace, least) or _told(trace, least):
+        row = [values[k] * factor for k, factor in wanted]
+        if all(map(math.isfinite, row[:2])):
+            rows.append(row if all(map(math.isfinite, row)) else row[:2])
+    return rows
+
+
+def _explicit(trace: _Trace, least: int) -> list[Row]:
+    """The values of points that are nothing but numbers between spaces, as most are; else none."""
+    text = trace.element.text.strip().removesuffix(",")
+    if NUMBERS.fullmatch(text) is None:
+        return []
+    try:
+        points = [[float(value) for value in point.split()] for point in text.split(",")]
+    except ValueError:
+        return []
+    width = len(trace.format)
+    return points if least == width and all(len(point) == width for point in points) else []
+
+
+def _told(trace: _Trace, least: int) -> Iterator[Row]:
+    """The values of every point, by all that the specification allows to write."""
+    state = [_Column() for _ in trace.format]
     texts = trace.element.text.split(",")
     for number, text in enumerate(texts):
         if not text.strip():
@@ -180,10 +203,7 @@ def _rows(trace: _Trace) -> list[Row]:
         count = _take(text, state, place)
         if count < least:
             raise InputError(place, f"{count} values of {least} channels")
-        values = [state[k].value * factor for k, factor in wanted]
-        if all(map(math.isfinite, values[:2])):
-            rows.append(values if all(map(math.isfinite, values)) else values[:2])
-    return rows
+        yield [column.value for column in state]
 
 
 def _take(text: str, state: list[_Column], place: str) -> int:
