@@ -81,7 +81,7 @@ def browse(tmp_path: Path) -> Iterator[Browse]:
     serving.join()
 
 
-def page_of(scene_file: Path, script: str) -> str:
+def page_of(scene_file: Path, script: str, *options: str) -> str:
     """The page of one second of the scene at 20 fps, with a script after its own."""
     out = scene_file.parent / "run.html"
     argv = [
@@ -95,6 +95,7 @@ def page_of(scene_file: Path, script: str) -> str:
         "20",
         "--size",
         "640x480",
+        *options,
     ]
     assert main(argv) == 0
     return out.read_text("utf-8").replace("</body>", f"<script>{script}</script></body>")
@@ -161,6 +162,24 @@ def test_the_page_plays_steps_winds_and_draws(scene_file: Path, browse: Browse) 
     assert seen["speed"] == 2
     assert seen["switches"] == [True, True, True]
     assert seen["looped"]
+
+
+def test_the_page_follows_a_body(scene_file: Path, browse: Browse) -> None:
+    """The ball stays in the middle, and is found there by a click; what stands still goes by."""
+    script = """(async () => {
+      const seen = { body: player.body, vectors: player.vectors, at: [], clicked: [] };
+      const box = document.getElementById("stage").getBoundingClientRect();
+      for (const time of [0, 0.5, 1]) {
+        player.seek(time);
+        seen.at.push(pixel(320 - 30, 240 + 30));
+        seen.clicked.push(stage_.bodyAt(box.left + box.width / 2 - 9, box.top + box.height / 2));
+      }
+      report(seen);
+    })();""".replace("stage_", "new Stage(document.getElementById('stage'), player)")
+    seen = browse(page_of(scene_file, PLAY + script, "--camera", "follow:ball", "--vectors"))
+    assert (seen["body"], seen["vectors"]) == (1, True)
+    assert all(b > 180 and r < 100 for r, _, b in seen["at"])
+    assert seen["clicked"] == [1, 1, 1]
 
 
 def test_the_page_lets_one_choose_a_body_by_touch(scene_file: Path, browse: Browse) -> None:
