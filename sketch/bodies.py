@@ -14,7 +14,7 @@ from sim.scene import Body, Circle, Polygon, Rectangle
 from sketch.kernel import depth, is_simple
 from sketch.reading import Reading
 
-__all__ = ["Bodies", "Drawn", "draw_body", "touch"]
+__all__ = ["Bodies", "Drawn", "draw_body", "thick", "touch"]
 
 Array = NDArray[np.float64]
 
@@ -62,9 +62,9 @@ def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float
     """The body of a reading: x = px / ppm, y = -py / ppm; its vertices about its centroid."""
     outline = np.ascontiguousarray(reading.outline)
     if reading.kind == "bar":
-        outline = _thick(outline, pen)
+        outline = thick(outline, pen)
         if not is_simple(outline):  # a line that turns within its own thickness
-            outline = _thick(reading.outline[[0, -1]], pen)
+            outline = thick(reading.outline[[0, -1]], pen)
     world = [complex(x, -y) / pixels_per_metre for x, y in outline.tolist()]
     angle = 0.0
     area, middle = _moments(world)
@@ -125,7 +125,7 @@ def _moments(corners: list[complex]) -> tuple[float, complex]:
     return area, at + first / area if area else sum(corners) / len(corners)
 
 
-def _thick(line: Array, pen: float) -> Array:
+def thick(line: Array, pen: float) -> Array:
     """A polyline as an outline of the pen's width, mitred at its corners."""
     steps = np.diff(line, axis=0)
     u = steps / np.maximum(np.hypot(steps[:, 0], steps[:, 1]), 1e-9)[:, None]

@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
 NO_BODY = 30.0  # nats that an X away from every body is unlikely: it would mean nothing
+ON_LINE = 0.25  # of an X's extent: a line that goes by its middle as near as that is what it stands on,
+LARGER = 2.0  # times as large as the X, at least: else it is a part of an asterisk
 ONE_ARROW = (
     15.0  # nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two
 )
@@ -48,9 +50,9 @@ class Context:
 
         proposed: whose candidates are `candidates`, one after another.  size: of the page [pixels].
         """
-        closed = [k for k in chosen if candidates[k].closed]
+        around = [k for k in chosen if candidates[k].closed or candidates[k].kind == "cross"]
         boxes = np.concatenate([np.empty((0, 4)), *(p.boxes for p in proposed)])
-        bodies = _Bodies([candidates[k] for k in closed], boxes[closed])
+        bodies = _Bodies([candidates[k] for k in around], boxes[around])
         known, self._known = self._known, {}
         out: list[float] = []
         for p, near in zip(proposed, bodies.beside([p.box for p in proposed]), strict=True):
@@ -84,6 +86,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float) -> list[float]:
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
         elif c.kind == "bar":
             gains[k] -= SLIP * (bodies.slip(c, extent) or extent < TWIG * size)
+            gains[k] += NO_BODY * bodies.ground(c)
         elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
             gains[k] += ANCHORS
     return gains
@@ -137,7 +140,7 @@ def _extent(outline: Array) -> float:
 
 
 class _Bodies:
-    """The likely bodies, to be asked which of them are at a place."""
+    """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
     def __init__(self, bodies: list[Fitted], boxes: Array) -> None:
         self.bodies = bodies
@@ -175,7 +178,8 @@ class _Bodies:
         x, y = c.outline.mean(axis=0).tolist()
         mine = set(c.pieces)
         return sum(
-            self.extent[b] > least
+            self.bodies[b].closed
+            and self.extent[b] > least
             and mine.isdisjoint(self.bodies[b].pieces)
             and depth(x, y, self.bodies[b].outline) < reach
             for b in self.near(x, y, reach)
@@ -187,7 +191,18 @@ class _Bodies:
         for x, y in (c.outline[0].tolist(), c.outline[-1].tolist()):
             for b in self.near(x, y, 0.1 * self.extent):
                 large, other = self.extent[b], self.bodies[b]
-                touches = abs(depth(x, y, other.outline)) < 0.1 * large
+                touches = other.closed and abs(depth(x, y, other.outline)) < 0.1 * large
                 if touches and extent < 0.5 * large and mine.isdisjoint(other.pieces):
+                    return True
+        return False
+
+    def ground(self, line: Fitted) -> bool:
+        """Whether an X of other ink stands on an open line, and on no closed outline."""
+        mine, dense = set(line.pieces), _dense(line.outline)
+        most = _extent(line.outline) / LARGER
+        for extent, mark in zip(self.extent, self.bodies, strict=True):
+            if mark.kind == "cross" and extent < most and mine.isdisjoint(mark.pieces):
+                off = np.hypot(*(dense - mark.outline.mean(axis=0)).T).min()
+                if off < ON_LINE * extent and not self.around(mark, 0.0):
                     return True
         return False

@@ -9,12 +9,13 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from sketch.kernel import fit_arrow, off_outline
+from sketch.bodies import thick
+from sketch.kernel import fit_arrow, is_simple, off_outline
 from sketch.outlines import RETRACE
 from sketch.pieces import Array, Page, Piece, Point
-from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
+from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of, unread
 
-__all__ = ["read_arrow", "read_bar", "read_cross", "with_strays"]
+__all__ = ["line_of_any_course", "read_arrow", "read_bar", "read_cross", "read_line", "with_strays"]
 
 MOST_BENDS = 5
 BEND = 3.0  # nats for each corner of a bar
@@ -29,6 +30,9 @@ OFTEN = (
 )  # times that a shaft and the barbs of an arrow are drawn: the pen comes back along a barb
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
 RARE = 25.0  # nats that an open line is rarer than an outline
+ANY_COURSE = 15.0  # nats that a line of any course is rarer than ink without a meaning
+COURSE = 32  # sides that it is drawn with,
+THIN = 0.004  # of its length: what it is as thick as, at least
 RARE_ARROW = 2.0  # likewise for an arrow: there is one on a page, or none
 
 Vertex = list[float]
@@ -47,6 +51,26 @@ def read_bar(piece: Piece) -> Fitted | None:
         if cost < best:
             best, segments = cost, k
     return Fitted("bar", (piece.index,), best + RARE, piece.line(segments))
+
+
+def read_line(piece: Piece) -> Fitted | None:
+    """An open line of any course: ground, where an X stands on it; by itself free ink is likelier.
+
+    None for one that crosses itself, or whose ends meet.
+    """
+    if piece.gap < 0.3 * piece.length:
+        return None
+    line = line_of_any_course(piece)
+    return None if line is None else Fitted("bar", (piece.index,), unread(piece) + ANY_COURSE, line)
+
+
+def line_of_any_course(piece: Piece) -> Array | None:
+    """A piece's ink as COURSE sides in equal steps [pixels]; None where it crosses itself."""
+    points = piece.points
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    t = np.linspace(0, along[-1], COURSE + 1)
+    line = np.stack([np.interp(t, along, points[:, k]) for k in (0, 1)], axis=1)
+    return line if is_simple(thick(line, THIN * piece.length)) else None
 
 
 def _turning(v: list[Vertex]) -> float:

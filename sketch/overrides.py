@@ -10,10 +10,10 @@ import numpy as np
 
 from sim.scene import InputError
 from sketch.grouping import arrow_groups, closing_chains
-from sketch.marks import read_arrow, read_cross
+from sketch.marks import line_of_any_course, read_arrow, read_bar, read_cross
 from sketch.outlines import Chain, read_outline
 from sketch.pieces import Page, Piece
-from sketch.scoring import Fitted
+from sketch.scoring import Fitted, unread
 
 __all__ = ["KINDS", "Overrides", "forced_reading", "normal_overrides"]
 
@@ -62,7 +62,7 @@ def forced_reading(page: Page, strokes: tuple[int, ...], kind: str) -> Fitted | 
         return best[0]
     longest = max(pieces, key=lambda p: p.length)
     if kind == "bar":
-        return Fitted("bar", names, 0.0, longest.line(1))
+        return Fitted("bar", names, 0.0, _line(longest))
     if kind == "anchor":
         return read_cross(page, names[:2]) or Fitted("cross", names, 0.0, _bars(pieces))
     return _arrow(page, names) or Fitted("arrow", names, 0.0, np.array(longest.ends))
@@ -76,6 +76,15 @@ def _arrow(page: Page, names: tuple[int, ...]) -> Fitted | None:
         if tuple(sorted(group)) == names
     ]
     return min((f for f in found if f is not None), key=lambda f: f.cost, default=None)
+
+
+def _line(piece: Piece) -> np.ndarray:
+    """An open line as it was drawn: as a polyline, or of any course, or straight between its ends."""
+    bar = read_bar(piece)
+    if bar is not None and bar.cost < unread(piece):
+        return bar.outline
+    course = line_of_any_course(piece)
+    return piece.line(1) if course is None else course
 
 
 def _bars(pieces: list[Piece]) -> np.ndarray:

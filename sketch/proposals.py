@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.grouping import arrow_groups, closing_chains, closing_ink, crosses
-from sketch.marks import read_arrow, read_bar, read_cross, with_strays
+from sketch.marks import read_arrow, read_bar, read_cross, read_line, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
 from sketch.pieces import End, Looked, Page, Piece
 from sketch.scoring import Fitted, unread
@@ -183,7 +183,7 @@ class Proposals:
             out += _again(page, found, self.free)
         for j, ink in () if alone.complete else closing_ink(page, p):
             out += fitted(((p.index, j), "over"), partial(read_outline, page, [(p.index, False)], ink))
-        out += _kept(read_bar(p))
+        out += _kept(read_bar(p)) + _kept(read_line(p))
         if not alone.plain:
             for names in crosses(page, p):
                 for cross in fitted((names, "cross"), lambda n=names: _kept(read_cross(page, n))):  # type: ignore[misc]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from pages import box, kinds, ngon, read, turned
 
+from sim.scene import Circle, Polygon
 from sketch.synthetic import HANDS, arrow, circle, cross, ellipse, line, outline
 
 HAND = [(name, seed) for name in ("neat", "quick", "pieces") for seed in range(3)]
@@ -172,3 +173,25 @@ def test_bodies_that_share_a_drawn_side(hand, rng) -> None:
     assert [len(b.strokes or []) for b in bodies] == [len(first), 1]
     for body, x in zip(bodies, (300, 470), strict=True):
         assert body.position == pytest.approx((x / 128, -300 / 128), abs=16 / 128)
+
+
+WAVES = [(150 + 10 * k, 400 + 110 * math.sin(k / 9)) for k in range(80)]
+VALLEY = [(150, 200), (420, 520), (760, 500), (1000, 220)]
+
+
+@hands
+@pytest.mark.parametrize("course", [WAVES, VALLEY], ids=["waves", "valley"])
+def test_a_line_of_any_course_is_ground_under_an_x(course, hand, rng) -> None:
+    x, y = course[len(course) // 2]
+    ground, mark = line(course, hand, rng), cross((x, y), 45, hand, rng)
+    bodies = read(ground, mark, circle((300, 120), 40, hand, rng)).scene.bodies
+    assert [(type(b.shape), b.anchored) for b in bodies] == [(Polygon, True), (Circle, False)]
+    drawn = np.concatenate(ground)
+    track = np.array(read(ground, mark).readings[0].outline)
+    assert max(np.hypot(*(drawn - p).T).min() for p in track) < 25
+
+
+def test_a_wavy_line_by_itself_is_left_out() -> None:
+    found = read(line(WAVES, HANDS["neat"], np.random.default_rng(0)))
+    assert kinds(found) == ["unread"]
+    assert "left out" in found.scene.notes[-1]
