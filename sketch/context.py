@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
 NO_BODY = 30.0  # nats that an X away from every body is unlikely: it would mean nothing
-ON_LINE = 0.25  # of an X's extent: a line that goes by its middle as near as that is what it stands on,
+ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on,
 LARGER = 2.0  # times as large as the X, at least: else it is a part of an asterisk
 ONE_ARROW = (
     15.0  # nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two

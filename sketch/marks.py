@@ -30,7 +30,7 @@ OFTEN = (
 )  # times that a shaft and the barbs of an arrow are drawn: the pen comes back along a barb
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
 RARE = 25.0  # nats that an open line is rarer than an outline
-ANY_COURSE = 15.0  # nats that a line of any course is rarer than ink without a meaning
+ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning
 COURSE = 32  # sides that it is drawn with,
 THIN = 0.004  # of its length: what it is as thick as, at least
 RARE_ARROW = 2.0  # likewise for an arrow: there is one on a page, or none

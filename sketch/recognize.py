@@ -302,14 +302,13 @@ def _error(page: Page, c: Fitted) -> float:
         return 0.0
     pieces = [page.pieces[i] for i in c.pieces]
     length = sum(p.length for p in pieces)
-    if c.kind == "bar":
-        square = pieces[0].residual[len(c.outline) - 1]
-    elif c.kind == "circle":
+    if c.kind == "circle":
         middle = c.outline.mean(axis=0)
         radius = math.dist(c.outline[0], middle)
         off = [np.hypot(*(page.strokes.samples[p.stroke] - middle).T) - radius for p in pieces]
         square = sum(p.length * float(np.mean(d * d)) for p, d in zip(pieces, off, strict=True)) / length
     else:
-        square = sum(p.length * off_outline(page.strokes, p.stroke, c.outline) for p in pieces) / length
+        around = c.outline if c.closed else np.concatenate([c.outline, c.outline[-2:0:-1]])  # forth and back
+        square = sum(p.length * off_outline(page.strokes, p.stroke, around) for p in pieces) / length
     parameters = {"circle": 3, "ellipse": 5, "rectangle": 5}.get(c.kind, 2 * len(c.outline))
     return math.sqrt(square * parameters / max(sum(p.observations for p in pieces), parameters))
