@@ -10,6 +10,7 @@
 #define JAMMED 1000.0      /* times the slack: a speed against constraints that says they contradict each other */
 #define STEPS_A_SECOND 20000.0 /* of the integrator, a simulated second: what turns faster than that is for the crowd */
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
+#define STEPS_OF_PAIR 32.0 /* of a search that cost as much again as looking at a pair at all */
 #define PAIRS_OF_FEW 1e6 /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
 int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance) {
@@ -103,8 +104,8 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     int32_t closed = closed_features(e, a, b);
     Mover ma = {a, &ta->motion}, mb = {b, &tb->motion};
     e->world->profile.pairs += 1;
-    e->spent += 1;
-    double t = first_touch(e->world, ma, mb, from, to, &e->slack, e->closed, closed);
+    double steps = 0, t = first_touch(e->world, ma, mb, from, to, &e->slack, e->closed, closed, &steps);
+    e->spent += 1 + steps / STEPS_OF_PAIR;
     if (t < ta->touch_time) ta->touch_time = t, ta->partner = b;
     if (b != 0 && t < tb->touch_time) tb->touch_time = t, tb->partner = a;
 }

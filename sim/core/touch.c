@@ -67,6 +67,7 @@ typedef struct Search {
     Mover a, b;
     const Feature *const *closed;
     int32_t closed_count;
+    double *steps; /* counted */
 } Search;
 
 static bool is_closed(const Search *s, const Feature *f) {
@@ -148,6 +149,7 @@ static double search_shapes(const Search *s, int32_t shape_a, int32_t shape_b, d
     double t = from, horizon = from, ra = vlength(a->centre) + a->reach, rb = vlength(b->centre) + b->reach;
     PairBound bound = {0};
     for (int32_t steps = 0; steps < MAX_STEPS; steps++) {
+        *s->steps += 1;
         State state_a = motion_state(s->a.motion, t), state_b = motion_state(s->b.motion, t);
         Placed pa = placed(&state_a), pb = placed(&state_b);
         double apart = disks_apart(a, &pa, b, &pb);
@@ -172,8 +174,8 @@ static double search_shapes(const Search *s, int32_t shape_a, int32_t shape_b, d
 }
 
 double first_touch(const World *world, Mover a, Mover b, double from, double to, const Slack *slack,
-                   const Feature *const *closed, int32_t closed_count) {
-    Search s = {world, slack, a, b, closed, closed_count};
+                   const Feature *const *closed, int32_t closed_count, double *steps) {
+    Search s = {world, slack, a, b, closed, closed_count, steps};
     Pose anywhere = {{0, 0}, 1, 0};
     ShapeWalk shapes = walk_shapes(world, a.body, anywhere, b.body, anywhere, INFINITY);
     double best = INFINITY;

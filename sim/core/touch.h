@@ -26,9 +26,9 @@ typedef struct Mover {
 
 /* The first time in [from, to] at which a feature of the two bodies that is not among `closed` touches; INFINITY if none.
  * `from` if they are too deep in each other then.  A search that takes too many steps gives up at a time before which
- * nothing touches, and returns that. */
+ * nothing touches, and returns that. The steps taken are added to *steps. */
 double first_touch(const World *world, Mover a, Mover b, double from, double to, const Slack *slack,
-                   const Feature *const *closed, int32_t closed_count);
+                   const Feature *const *closed, int32_t closed_count, double *steps);
 
 /* Whether a feature whose gap has closed is a touch at all: the point sits on the side from outside, and that side is the
  * one that it came in through. */
