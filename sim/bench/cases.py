@@ -2,98 +2,41 @@
 
 The truth of a case is a function of the sample times that gives the poses of its moving bodies.  Flight,
 impacts, every regime of friction, rolling, pivots and rest are each there alone, so that an error in one can
-be told from an error in another.
+be told from an error in another; mechanisms.py has those in which one turns into another.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sim.scene import Body, Circle, Joint, Rectangle, Scene
+from sim.bench.mechanisms import MECHANISMS
+from sim.bench.parts import (
+    Array,
+    Case,
+    G,
+    along,
+    case_error,
+    make_box,
+    make_disk,
+    make_ground,
+    make_scene,
+    poses,
+)
+from sim.scene import Joint, Scene
 
 __all__ = ["CASES", "Case", "case_error"]
-
-Array = NDArray[np.float64]
-G = 9.81
-
-
-@dataclass(frozen=True)
-class Case:
-    """A scene with known motion.
-
-    Attributes:
-        name: a word or two.
-        about: what moves, and where the truth comes from.
-        scene: with moving bodies "a", "b", ... and anchored ones.
-        duration: [s].
-        truth: sample times [s], shape (n,), to poses (x, y, angle) of the moving bodies in the scene's order,
-            shape (n, moving, 3).
-    """
-
-    name: str
-    about: str
-    scene: Scene
-    duration: float
-    truth: Callable[[Array], Array]
-
-
-def case_error(case: Case, times: Array, positions: Array, angles: Array) -> float:
-    """The largest error over samples and bodies [m]: of position, plus radius times that of the angle."""
-    moving = [k for k, b in enumerate(case.scene.bodies) if not b.anchored]
-    want = case.truth(times)
-    reach = np.array([_reach(case.scene.bodies[k]) for k in moving])
-    off = np.hypot(positions[:, moving, 0] - want[..., 0], positions[:, moving, 1] - want[..., 1])
-    return float(np.max(off + reach * np.abs(angles[:, moving] - want[..., 2])))
-
-
-def _reach(body: Body) -> float:
-    return body.shape.radius if isinstance(body.shape, Circle) else math.hypot(*body.shape.vertices[0])
-
-
-# ---------------------------------------------------------------- parts of scenes
-
-
-def _disk(name: str, radius: float, at: tuple[float, float], **more: object) -> Body:
-    return Body(id=name, shape=Circle(radius), position=at, **{"friction": 0.0, "elasticity": 0.0, **more})  # type: ignore[arg-type]
-
-
-def _box(name: str, size: tuple[float, float], at: tuple[float, float], **more: object) -> Body:
-    return Body(id=name, shape=Rectangle(size), position=at, **{"friction": 0.0, "elasticity": 0.0, **more})  # type: ignore[arg-type]
-
-
-def _ground(slope: float = 0.0, **more: object) -> Body:
-    """A wide slab whose upper side goes through the origin, falling to the right by `slope` [rad]."""
-    return _box(
-        "ground", (60.0, 2.0), (-math.sin(slope), -math.cos(slope)), angle=-slope, anchored=True, **more
-    )
-
-
-def _scene(bodies: Sequence[Body], joints: Sequence[Joint] = (), gravity: float = G) -> Scene:
-    return Scene(bodies=list(bodies), joints=list(joints), gravity=(0.0, -gravity))
-
-
-def _along(slope: float, s: Array, height: float) -> tuple[Array, Array]:
-    """The point at s down the slope and `height` above it."""
-    return s * math.cos(slope) + height * math.sin(slope), -s * math.sin(slope) + height * math.cos(slope)
-
-
-def _poses(*bodies: tuple[Array | float, Array | float, Array | float], times: Array) -> Array:
-    return np.stack([np.stack([np.broadcast_to(v, times.shape) for v in b], axis=1) for b in bodies], axis=1)
-
 
 # ---------------------------------------------------------------- flight and impacts
 
 
 def _projectile() -> Case:
     def truth(t: Array) -> Array:
-        return _poses((5 * t, 10 + 8 * t - G / 2 * t**2, 7 * t), times=t)
+        return poses((5 * t, 10 + 8 * t - G / 2 * t**2, 7 * t), times=t)
 
-    scene = _scene([_disk("a", 0.2, (0, 10), velocity=(5.0, 8.0), angular_velocity=7.0)])
+    scene = make_scene([make_disk("a", 0.2, (0, 10), velocity=(5.0, 8.0), angular_velocity=7.0)])
     return Case("projectile", "free flight with spin: a parabola", scene, 2.0, truth)
 
 
@@ -115,9 +58,9 @@ def _heights(t: Array, drop: float, gravity: float, e: float) -> Array:
 
 def _bounces_to_rest() -> Case:
     def truth(t: Array) -> Array:
-        return _poses((0, 0.1 + _heights(t, 1.0, G, 0.5), 0), times=t)
+        return poses((0, 0.1 + _heights(t, 1.0, G, 0.5), 0), times=t)
 
-    scene = _scene([_ground(), _disk("a", 0.1, (0, 1.1), elasticity=0.5)])
+    scene = make_scene([make_ground(), make_disk("a", 0.1, (0, 1.1), elasticity=0.5)])
     return Case(
         "bounces to rest",
         "a dropped ball, elasticity 0.5: infinitely many bounces in finite time",
@@ -133,11 +76,11 @@ def _bounces_down_a_slope() -> Case:
     def truth(t: Array) -> Array:
         height = _heights(t, drop, G * math.cos(slope), 0.6)
         s = G / 2 * math.sin(slope) * t**2
-        x, y = _along(slope, s, 0.0)
-        return _poses((x + (r + height) * math.sin(slope), y + (r + height) * math.cos(slope), 0), times=t)
+        x, y = along(slope, s, 0.0)
+        return poses((x + (r + height) * math.sin(slope), y + (r + height) * math.cos(slope), 0), times=t)
 
     start = ((r + drop) * math.sin(slope), (r + drop) * math.cos(slope))
-    scene = _scene([_ground(slope), _disk("a", r, start, elasticity=0.6)])
+    scene = make_scene([make_ground(slope), make_disk("a", r, start, elasticity=0.6)])
     return Case(
         "bounces down a slope", "no friction: bounces across the slope, slides along it", scene, 2.5, truth
     )
@@ -161,10 +104,12 @@ def _spinning_bounce() -> Case:
             x[later] = x[later] + push * (t[later] - start)
             angle[later] = angle[later] + 2 * push / r * (t[later] - start)
             start += 2 * vy / G
-        return _poses((x, r + _heights(t, drop, G, e), angle), times=t)
+        return poses((x, r + _heights(t, drop, G, e), angle), times=t)
 
-    ball = _disk("a", r, (0, r + drop), velocity=(v, 0.0), angular_velocity=spin, friction=mu, elasticity=e)
-    scene = _scene([_ground(friction=mu), ball])
+    ball = make_disk(
+        "a", r, (0, r + drop), velocity=(v, 0.0), angular_velocity=spin, friction=mu, elasticity=e
+    )
+    scene = make_scene([make_ground(friction=mu), ball])
     return Case(
         "spinning bounce", "impacts with friction: slipping ones, then sticking ones", scene, 2.0, truth
     )
@@ -202,12 +147,16 @@ def _unequal_disks() -> Case:
         return out
 
     bodies = [
-        _disk(n, r, (x, 0.0), mass=m, elasticity=1.0)
+        make_disk(n, r, (x, 0.0), mass=m, elasticity=1.0)
         for n, r, x, m in zip("abcd", radii, xs, masses, strict=True)
     ]
     bodies[0].velocity = (v0, 0.0)
     return Case(
-        "unequal disks", "a line of disks, elastic impacts passed on", _scene(bodies, gravity=0), 3.0, truth
+        "unequal disks",
+        "a line of disks, elastic impacts passed on",
+        make_scene(bodies, gravity=0),
+        3.0,
+        truth,
     )
 
 
@@ -221,12 +170,16 @@ def _blow_on_a_rod() -> Case:
         j = (1 + e) * v / (1 / m + 1 / mass + d * d / moment)
         later = np.maximum(t - hit, 0)
         ball = (-1.0 + v * t - j / m * later, d, 0.0)
-        return _poses(ball, (j / mass * later, 0.0, -j * d / moment * later), times=t)
+        return poses(ball, (j / mass * later, 0.0, -j * d / moment * later), times=t)
 
-    ball = _disk("a", 0.15, (-1.0, d), mass=m, velocity=(v, 0.0), elasticity=e)
-    rod = _box("b", (0.1, length), (0.0, 0.0), mass=mass, moment=moment, elasticity=e)
+    ball = make_disk("a", 0.15, (-1.0, d), mass=m, velocity=(v, 0.0), elasticity=e)
+    rod = make_box("b", (0.1, length), (0.0, 0.0), mass=mass, moment=moment, elasticity=e)
     return Case(
-        "blow on a rod", "a ball hits a free rod off its centre", _scene([ball, rod], gravity=0), 1.0, truth
+        "blow on a rod",
+        "a ball hits a free rod off its centre",
+        make_scene([ball, rod], gravity=0),
+        1.0,
+        truth,
     )
 
 
@@ -249,28 +202,30 @@ def _corner_impact() -> Case:
         j = -(1 + e) * (vy + spin * arm) / (1 / m + arm * arm / moment)
         later = np.maximum(t - hit, 0)
         y = y0 + v * t - G / 2 * t**2 + j / m * later
-        return _poses((t, y, tilt + spin * t + j * arm / moment * later), times=t)
+        return poses((t, y, tilt + spin * t + j * arm / moment * later), times=t)
 
-    box = _box(
+    box = make_box(
         "a", (w, h), (0, y0), angle=tilt, velocity=(1.0, v), angular_velocity=spin, mass=m, elasticity=e
     )
-    return Case("corner impact", "a spinning box lands on a corner", _scene([_ground(), box]), 0.35, truth)
+    return Case(
+        "corner impact", "a spinning box lands on a corner", make_scene([make_ground(), box]), 0.35, truth
+    )
 
 
 # ---------------------------------------------------------------- friction and rolling
 
 
-def _sliding_block() -> Case:
-    slope, mu = math.pi / 6, 0.3
+def _sliding_block(name: str, slope: float, mu: float) -> Case:
 
     def truth(t: Array) -> Array:
         a = G * (math.sin(slope) - mu * math.cos(slope))
-        return _poses((*_along(slope, a / 2 * t**2, 0.25), -slope), times=t)
+        return poses((*along(slope, a / 2 * t**2, 0.25), -slope), times=t)
 
     at = (0.25 * math.sin(slope), 0.25 * math.cos(slope))
-    block = _box("a", (0.5, 0.5), at, angle=-slope, friction=mu)
-    scene = _scene([_ground(slope, friction=mu), block])
-    return Case("sliding block", "down 30 degrees with friction 0.3: a = g (sin - mu cos)", scene, 1.0, truth)
+    block = make_box("a", (0.5, 0.5), at, angle=-slope, friction=mu)
+    scene = make_scene([make_ground(slope, friction=mu), block])
+    about = f"down {math.degrees(slope):.0f} degrees with friction {mu:.3g}: a = g (sin - mu cos)"
+    return Case(name, about, scene, 1.0, truth)
 
 
 def _sliding_stops() -> Case:
@@ -278,10 +233,10 @@ def _sliding_stops() -> Case:
 
     def truth(t: Array) -> Array:
         end = np.minimum(t, v / (mu * G))
-        return _poses((v * end - mu * G / 2 * end**2, 0.2, 0.0), times=t)
+        return poses((v * end - mu * G / 2 * end**2, 0.2, 0.0), times=t)
 
-    block = _box("a", (0.8, 0.4), (0.0, 0.2), velocity=(v, 0.0), friction=mu)
-    scene = _scene([_ground(friction=mu), block])
+    block = make_box("a", (0.8, 0.4), (0.0, 0.2), velocity=(v, 0.0), friction=mu)
+    scene = make_scene([make_ground(friction=mu), block])
     return Case("sliding stops", "a block slides until friction has stopped it, and stays", scene, 2.0, truth)
 
 
@@ -293,10 +248,10 @@ def _slip_to_roll() -> Case:
         s = np.minimum(t, end)
         x = v * s - mu * G / 2 * s**2 + (v - mu * G * end) * (t - s)
         spin = -2 * mu * G * end / r
-        return _poses((x, r, -mu * G / r * s**2 + spin * (t - s)), times=t)
+        return poses((x, r, -mu * G / r * s**2 + spin * (t - s)), times=t)
 
-    disk = _disk("a", r, (0.0, r), velocity=(v, 0.0), friction=mu)
-    scene = _scene([_ground(friction=mu), disk])
+    disk = make_disk("a", r, (0.0, r), velocity=(v, 0.0), friction=mu)
+    scene = make_scene([make_ground(friction=mu), disk])
     return Case(
         "slip to roll", "a disk thrown along the ground slips, then rolls at two thirds", scene, 2.0, truth
     )
@@ -307,10 +262,10 @@ def _rolling_disk() -> Case:
 
     def truth(t: Array) -> Array:
         s = G * math.sin(slope) / 3 * t**2
-        return _poses((*_along(slope, s, r), -s / r), times=t)
+        return poses((*along(slope, s, r), -s / r), times=t)
 
-    disk = _disk("a", r, (r * math.sin(slope), r * math.cos(slope)), friction=1.0)
-    scene = _scene([_ground(slope, friction=1.0), disk])
+    disk = make_disk("a", r, (r * math.sin(slope), r * math.cos(slope)), friction=1.0)
+    scene = make_scene([make_ground(slope, friction=1.0), disk])
     return Case("rolling disk", "down 20 degrees without slipping: a = 2/3 g sin", scene, 2.0, truth)
 
 
@@ -320,15 +275,17 @@ def _rolling_cart() -> Case:
     def truth(t: Array) -> Array:
         a = (frame + 2 * wheel) * G * math.sin(slope) / (frame + 3 * wheel)
         s = a / 2 * t**2
-        spots = [_along(slope, s + k, r) for k in (0.0, -0.6, 0.6)]
-        return _poses((*spots[0], -slope), (*spots[1], -s / r), (*spots[2], -s / r), times=t)
+        spots = [along(slope, s + k, r) for k in (0.0, -0.6, 0.6)]
+        return poses((*spots[0], -slope), (*spots[1], -s / r), (*spots[2], -s / r), times=t)
 
     one = np.zeros(1)
-    at = [tuple(float(c[0]) for c in _along(slope, one + k, r)) for k in (0.0, -0.6, 0.6)]
-    body = _box("a", (1.6, 0.3), (at[0][0], at[0][1]), angle=-slope, mass=frame, friction=1.0)
-    wheels = [_disk(n, r, (p[0], p[1]), mass=wheel, friction=1.0) for n, p in zip("bc", at[1:], strict=True)]
+    at = [tuple(float(c[0]) for c in along(slope, one + k, r)) for k in (0.0, -0.6, 0.6)]
+    body = make_box("a", (1.6, 0.3), (at[0][0], at[0][1]), angle=-slope, mass=frame, friction=1.0)
+    wheels = [
+        make_disk(n, r, (p[0], p[1]), mass=wheel, friction=1.0) for n, p in zip("bc", at[1:], strict=True)
+    ]
     joints = [Joint(bodies=("a", b.id), position=b.position) for b in wheels]
-    scene = _scene([_ground(slope, friction=1.0), body, *wheels], joints)
+    scene = make_scene([make_ground(slope, friction=1.0), body, *wheels], joints)
     return Case("rolling cart", "a frame on two wheels: a = (M + 2m) g sin / (M + 3m)", scene, 2.0, truth)
 
 
@@ -373,7 +330,7 @@ def _chain(
         u = L[k] * np.array([math.sin(start[k]), -math.cos(start[k])])
         at = (float(top[0] + u[0] / 2), float(top[1] + u[1] / 2))
         bodies.append(
-            _box("abcdef"[k], (lengths[k], width), at, angle=start[k] - math.pi / 2, mass=masses[k])
+            make_box("abcdef"[k], (lengths[k], width), at, angle=start[k] - math.pi / 2, mass=masses[k])
         )
         bodies[k].moment = float(moment[k])
         joints.append(
@@ -382,7 +339,7 @@ def _chain(
             )
         )
         top = top + u
-    return Case(name, about, _scene(bodies, joints), 5.0, truth)
+    return Case(name, about, make_scene(bodies, joints), 5.0, truth)
 
 
 # ---------------------------------------------------------------- rest
@@ -390,39 +347,41 @@ def _chain(
 
 def _at_rest(name: str, about: str, scene: Scene, duration: float = 10.0) -> Case:
     def truth(t: Array) -> Array:
-        return _poses(*((*b.position, b.angle) for b in scene.bodies if not b.anchored), times=t)
+        return poses(*((*b.position, b.angle) for b in scene.bodies if not b.anchored), times=t)
 
     return Case(name, about, scene, duration, truth)
 
 
 def _tower(count: int) -> Case:
-    boxes = [_box(f"box{k}", (0.5, 0.4), (0.0, 0.2 + 0.4 * k), friction=0.5) for k in range(count)]
+    boxes = [make_box(f"box{k}", (0.5, 0.4), (0.0, 0.2 + 0.4 * k), friction=0.5) for k in range(count)]
     return _at_rest(
-        f"tower of {count}", "boxes on each other: must not move", _scene([_ground(friction=0.5), *boxes])
+        f"tower of {count}",
+        "boxes on each other: must not move",
+        make_scene([make_ground(friction=0.5), *boxes]),
     )
 
 
-def _resting_block() -> Case:
+def _resting_block(name: str, mu: float) -> Case:
     slope = 0.5
-    block = _box(
-        "a", (0.5, 0.5), (0.25 * math.sin(slope), 0.25 * math.cos(slope)), angle=-slope, friction=0.7
+    block = make_box(
+        "a", (0.5, 0.5), (0.25 * math.sin(slope), 0.25 * math.cos(slope)), angle=-slope, friction=mu
     )
-    scene = _scene([_ground(slope, friction=0.7), block])
-    return _at_rest("resting block", "on 29 degrees with friction 0.7: must not creep", scene)
+    scene = make_scene([make_ground(slope, friction=mu), block])
+    return _at_rest(name, f"on 29 degrees with friction {mu:.3g}: must not creep", scene)
 
 
 def _light_under_heavy() -> Case:
-    light = _box("a", (0.5, 0.5), (0, 0.25), mass=1.0, friction=0.5)
-    heavy = _box("b", (1.0, 1.0), (0, 1.0), mass=100.0, friction=0.5)
-    scene = _scene([_ground(friction=0.5), light, heavy])
+    light = make_box("a", (0.5, 0.5), (0, 0.25), mass=1.0, friction=0.5)
+    heavy = make_box("b", (1.0, 1.0), (0, 1.0), mass=100.0, friction=0.5)
+    scene = make_scene([make_ground(friction=0.5), light, heavy])
     return _at_rest("light under heavy", "1 kg under 100 kg: must not move", scene)
 
 
 def _balance() -> Case:
-    plank = _box("a", (4.0, 0.2), (0.0, 1.1), mass=3.0, friction=0.6)
-    near = _box("b", (0.4, 0.4), (0.8, 1.4), mass=4.0, friction=0.6)
-    far = _box("c", (0.4, 0.4), (-1.6, 1.4), mass=2.0, friction=0.6)
-    scene = _scene([plank, near, far], [Joint(bodies=(None, "a"), position=(0.0, 1.1))])
+    plank = make_box("a", (4.0, 0.2), (0.0, 1.1), mass=3.0, friction=0.6)
+    near = make_box("b", (0.4, 0.4), (0.8, 1.4), mass=4.0, friction=0.6)
+    far = make_box("c", (0.4, 0.4), (-1.6, 1.4), mass=2.0, friction=0.6)
+    scene = make_scene([plank, near, far], [Joint(bodies=(None, "a"), position=(0.0, 1.1))])
     return _at_rest("balance", "2 kg at twice the distance of 4 kg on a see-saw: must not move", scene)
 
 
@@ -434,7 +393,8 @@ CASES: list[Case] = [
     _unequal_disks(),
     _blow_on_a_rod(),
     _corner_impact(),
-    _sliding_block(),
+    _sliding_block("sliding block", math.pi / 6, 0.3),
+    _sliding_block("barely slides", 0.5, 0.999 * math.tan(0.5)),
     _sliding_stops(),
     _slip_to_roll(),
     _rolling_disk(),
@@ -442,9 +402,11 @@ CASES: list[Case] = [
     _chain([1.0], [1.0], [1.5], "pendulum", "a rod on a pivot; DOP853"),
     _chain([1.0, 0.7], [1.0, 2.0], [0.5, 0.3], "double pendulum", "two rods; DOP853"),
     _chain([0.8, 0.6, 0.9], [1.0, 0.5, 2.0], [0.4, -0.2, 0.3], "triple pendulum", "three rods; DOP853"),
-    _resting_block(),
+    _resting_block("resting block", 0.7),
+    _resting_block("barely rests", 1.001 * math.tan(0.5)),
     _light_under_heavy(),
     _balance(),
     _tower(10),
     _tower(30),
+    *MECHANISMS,
 ]

@@ -372,7 +372,7 @@ int find_modes(ContactSolver *solver, System *s, const Slack *slack, double *acc
     status = solve(solver, s, r.takes_part, r.wanted, 1e-4 * slack->speed, r.force);
     if (status != SIM_OK) return status;
     accelerations(s, r.force, acceleration);
-    double gravity = vlength(s->world->gravity), none = 1e-7 * (gravity > 0 ? gravity : 1);
+    double gravity = vlength(s->world->gravity), none = 1e-10 * (gravity > 0 ? gravity : 1);
     for (int32_t k = 0; k < s->contact_count; k++) {
         Contact *c = &s->contact[k];
         const double *f = &r.force[2 * (s->joint_count + k)];
