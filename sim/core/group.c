@@ -96,13 +96,8 @@ static int find_pulls(Exact *e, double time) {
     if (status != SIM_OK) return status;
     system_find_bias(g);
     for (int32_t i = 0; i < g->count; i++) {
-        const Motion *m = &e->track[g->member[i]].motion;
-        double x = (time - m->start) / m->span;
-        for (int c = 0; c < 3; c++) {
-            double sum = 0;
-            for (int d = m->degree; d >= 1; d--) sum = sum * x + d * m->v[c][d];
-            e->acceleration[3 * i + c] = sum / m->span;
-        }
+        State a = motion_acceleration(&e->track[g->member[i]].motion, time);
+        e->acceleration[3 * i] = a.v.x, e->acceleration[3 * i + 1] = a.v.y, e->acceleration[3 * i + 2] = a.spin;
     }
     for (int32_t k = 0; k < g->contact_count; k++) {
         const Row *row = contact_row(g, k);

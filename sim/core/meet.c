@@ -3,7 +3,8 @@
 
 /* ---------------------------------------------------------------- what is a touch */
 
-/* Whether a's corner sits on something with this normal from outside: both sides of the corner lead away, within the slack. */
+/* Whether a's corner sits on something with this normal from outside: both sides of the corner lead away, or no
+ * farther in than what is held. */
 static bool leads_away(const World *world, const Feature *f, const Placed *a, Vec normal, const Slack *slack) {
     const Shape *shape = &world->shape[f->shape_a];
     if (shape->count == 1) return true;
@@ -11,7 +12,7 @@ static bool leads_away(const World *world, const Feature *f, const Placed *a, Ve
     int32_t n = shape->count;
     for (int32_t k = 0; k < 2; k++) {
         Vec to = vsub(v[(f->index_a + (k ? 1 : n - 1)) % n], v[f->index_a]);
-        if (vdot(turn(a->at, to), normal) < -1e-6 * vlength(to) - 4 * slack->gap) return false;
+        if (vdot(turn(a->at, to), normal) < -1e-6 * vlength(to) - slack->deep) return false;
     }
     return true;
 }

@@ -40,6 +40,19 @@ State motion_state(const Motion *m, double time) {
                    vec(horner(m->v[0], d, x), horner(m->v[1], d, x)), horner(m->v[2], d, x)};
 }
 
+static double slope(const double *c, int degree, double x) {
+    double sum = 0;
+    for (int k = degree; k >= 1; k--) sum = sum * x + k * c[k];
+    return sum;
+}
+
+State motion_acceleration(const Motion *m, double time) {
+    double x = (time - m->start) / m->span;
+    int d = m->degree;
+    Vec a = vec(slope(m->v[0], d, x), slope(m->v[1], d, x));
+    return (State){.v = vscale(a, 1 / m->span), .spin = slope(m->v[2], d, x) / m->span};
+}
+
 Vec motion_position(const Motion *m, double time) {
     double x = (time - m->start) / m->span;
     return vec(horner(m->q[0], m->degree, x), horner(m->q[1], m->degree, x));

@@ -41,6 +41,7 @@ Motion motion_at_rest(const State *state, double time);
 Motion motion_in_flight(const State *state, double time, Vec gravity);
 
 State motion_state(const Motion *motion, double time);
+State motion_acceleration(const Motion *motion, double time); /* in v and spin */
 Vec motion_position(const Motion *motion, double time);
 
 /* How far the body goes at most from one time to another [m]. */

@@ -47,12 +47,13 @@ static int reserve(Smooth *s, int32_t rows) {
     free(s->matrix);
     s->row_capacity = 0;
     s->active = malloc(3 * n * sizeof *s->active);
-    s->matrix = malloc((n * n + 2 * n) * sizeof *s->matrix);
+    s->matrix = malloc((n * n + 3 * n) * sizeof *s->matrix);
     if (!s->active || !s->matrix) return SIM_OUT_OF_MEMORY;
     s->rank = s->active + n;
     s->first = s->active + 2 * n;
     s->force = s->matrix + n * n;
     s->residual = s->force + n;
+    s->softness = s->force + 2 * n;
     s->row_capacity = (int32_t)n;
     return SIM_OK;
 }
@@ -84,26 +85,30 @@ int smooth_prepare(Smooth *s, System *system) {
                 s->active[s->active_count++] = j;
             }
     }
+    for (int32_t i = 0; i < s->active_count; i++) s->softness[i] = 1;
     for (int32_t i = 0; i < s->active_count; i++)
         for (s->first[i] = 0; s->first[i] < i; s->first[i]++)
             if (share_member(&system->row[s->active[i]], &system->row[s->active[s->first[i]]])) break;
     return SIM_OK;
 }
 
-/* How much softer than the others a row may be: where sticking contacts share a load in more than one way, friction goes
- * to those that press, as Coulomb's law wants. */
-static double softness(const System *system, int32_t row, double most) {
-    int32_t k = (row - 2 * system->joint_count) / 2;
-    if (row < 2 * system->joint_count || (row & 1) == 0) return 1;
-    double force = system->contact[k].force;
-    return most > 0 ? most / fmax(force, 1e-4 * most) : 1;
+/* How much softer than the others each row may be in a step: where sticking contacts share a load in more than one way,
+ * friction goes to those that press as it begins, as Coulomb's law wants. */
+static void find_softness(Smooth *s, const System *system) {
+    int32_t joints = 2 * system->joint_count;
+    double most = 0;
+    for (int32_t k = 0; k < system->contact_count; k++) most = fmax(most, system->contact[k].force);
+    for (int32_t i = 0; i < s->active_count; i++) {
+        int32_t row = s->active[i];
+        bool is_friction = row >= joints && (row & 1) == 1 && most > 0;
+        s->softness[i] = is_friction ? most / fmax(system->contact[(row - joints) / 2].force, 1e-4 * most) : 1;
+    }
 }
 
 /* LU without pivoting within the profile: L below with its diagonal, U above with ones on its diagonal. */
 static void factor(Smooth *s, const System *system, double relax) {
     int32_t n = s->active_count;
-    double *A = s->matrix, most = 0;
-    for (int32_t k = 0; k < system->contact_count; k++) most = fmax(most, system->contact[k].force);
+    double *A = s->matrix;
     for (int32_t i = 0; i < n; i++) {
         const Row *ri = &system->row[s->active[i]];
         for (int32_t j = s->first[i]; j < i; j++) {
@@ -118,7 +123,7 @@ static void factor(Smooth *s, const System *system, double relax) {
             A[j * n + i] = upper / A[j * n + j];
         }
         double diagonal = row_coupling(system, ri, ri);
-        diagonal += relax * fabs(diagonal) * softness(system, s->active[i], most);
+        diagonal += relax * fabs(diagonal) * s->softness[i];
         for (int32_t k = s->first[i]; k < i; k++) diagonal -= A[i * n + k] * A[k * n + i];
         A[i * n + i] = diagonal;
     }
@@ -243,12 +248,24 @@ static void keep_if_small(System *system, const double *before, double worst) {
     if (!small) load(system, before);
 }
 
+/* Place the rows, with forces along the rows themselves: what is moved onto the constraints by the least motion gains no
+ * energy, as it would along the force of a sliding contact. */
+static int place_plain(System *system) {
+    int status = system_place(system);
+    for (int32_t i = 0; i < system->row_count && status == SIM_OK; i++) {
+        Row *row = &system->row[i];
+        memcpy(row->fa, row->ja, sizeof row->fa);
+        memcpy(row->fb, row->jb, sizeof row->fb);
+    }
+    return status;
+}
+
 /* Newton's method on the positions: the first pass leaves the square of the error. */
 static int project_positions(Smooth *s, System *system) {
     store(system, s->start);
     double first = 0;
     for (int pass = 0; pass < 3; pass++) {
-        int status = system_place(system);
+        int status = place_plain(system);
         if (status != SIM_OK) return status;
         double worst = 0;
         for (int32_t i = 0; i < s->active_count; i++) {
@@ -261,8 +278,8 @@ static int project_positions(Smooth *s, System *system) {
         substitute(s);
         for (int32_t i = 0; i < s->active_count; i++) {
             const Row *row = &system->row[s->active[i]];
-            move(system, row->a, row->ja, s->residual[i]);
-            move(system, row->b, row->jb, s->residual[i]);
+            move(system, row->a, row->fa, s->residual[i]);
+            move(system, row->b, row->fb, s->residual[i]);
         }
     }
     keep_if_small(system, s->start, first);
@@ -270,7 +287,7 @@ static int project_positions(Smooth *s, System *system) {
 }
 
 int smooth_project_velocities(Smooth *s, System *system) {
-    int status = system_place(system);
+    int status = place_plain(system);
     if (status != SIM_OK) return status;
     store(system, s->start);
     double first = 0;
@@ -281,12 +298,7 @@ int smooth_project_velocities(Smooth *s, System *system) {
             if (pass == 0) first = fmax(first, fabs(s->residual[i]));
         }
         substitute(s);
-        for (int32_t i = 0; i < s->active_count; i++) {
-            Row plain = system->row[s->active[i]];
-            memcpy(plain.fa, plain.ja, sizeof plain.fa);
-            memcpy(plain.fb, plain.jb, sizeof plain.fb);
-            row_push(system, &plain, s->residual[i]);
-        }
+        for (int32_t i = 0; i < s->active_count; i++) row_push(system, &system->row[s->active[i]], s->residual[i]);
     }
     keep_if_small(system, s->start, first);
     return SIM_OK;
@@ -415,22 +427,26 @@ static double margin_at(Smooth *s, System *system, const Motion *motion, double 
     return modes_margin(s, system, scale);
 }
 
-/* The first moment of the step past which the modes do not hold, searched on its dense output. */
+/* The first moment of the step past which the modes do not hold, searched on its dense output; INFINITY if there is none. */
 static double find_end_of_modes(Smooth *s, System *system, const Motion *motion, double from, double to, double scale) {
     const int parts = 8;
-    double before = from, after = to, high = 0, low = 0;
+    double before = from, after = to, high = margin_at(s, system, motion, from, scale), low = 0, none = INFINITY;
+    if (high < 0) { /* redundant contacts share out forces in another way than when the step was made */
+        find_unsure(s, system, scale);
+        none = to = fmin(to, from + UNSURE);
+        high = modes_margin(s, system, scale);
+    }
     bool found = false;
-    for (int i = 0; i <= parts && !found; i++) {
+    for (int i = 1; i <= parts && !found; i++) {
         double t = from + (to - from) * i / parts, m = margin_at(s, system, motion, t, scale);
-        if (m < 0) {
-            if (i == 0) return fmin(to, from + UNSURE);
-            found = true;
+        found = m < 0;
+        if (found) {
             after = t, low = m;
         } else {
             before = t, high = m;
         }
     }
-    if (!found) return INFINITY;
+    if (!found) return none;
     for (int i = 0; i < 100 && after - before > 1e-13 * (1 + fabs(after)); i++) { /* Illinois, kept off the ends */
         double part = fmin(fmax(high / (high - low), 0.02), 0.98), t = before + (after - before) * part;
         double m = margin_at(s, system, motion, t, scale);
@@ -452,6 +468,7 @@ static double force_scale(const System *system) {
 int smooth_step(Smooth *s, System *system, double from, double *h, Motion *motion, bool *ended) {
     int32_t n = 6 * system->count;
     store(system, s->start);
+    find_softness(s, system);
     int status = derive(s, system, s->start, s->k[0]);
     double scale = force_scale(system), margin = INFINITY, step;
     bool unsure = find_unsure(s, system, scale);

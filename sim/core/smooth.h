@@ -10,7 +10,7 @@ typedef struct Smooth {
     double *start, *trial, *end, *k[ALL_STAGES];
     int32_t *active, *rank, *first; /* rows that hold, in elimination order; each row's place in it; profiles */
     int32_t active_count;
-    double *matrix, *force, *residual;
+    double *matrix, *force, *residual, *softness; /* the latter three by active row */
     double *acceleration;
     double tolerance;
     double relax; /* what makes redundant rows solvable: kept by the caller from step to step, 0 at first */

@@ -98,6 +98,20 @@ static double grazing_step(const Slack *slack, double gap, double steer) {
     return fmax(safe_step(room, 0, steer), 1e-9);
 }
 
+/* The gap's second derivative: what the bodies' accelerations do along the normal, and what comes from their velocities. */
+static double gap_acceleration(const Search *s, const Feature *f, const Gap *g, const Placed *pa, const Placed *pb,
+                               double time) {
+    double sum, along;
+    bool a_first = f->body_a == s->a.body;
+    feature_bias(f, a_first ? pa : pb, a_first ? pb : pa, &sum, &along);
+    for (int k = 0; k < 2; k++) {
+        State a = motion_acceleration(k ? s->b.motion : s->a.motion, time);
+        double part = vdot(a.v, g->normal) + a.spin * vcross(vsub(g->point, (k ? pb : pa)->at.p), g->normal);
+        sum += (k == 0) == a_first ? part : -part;
+    }
+    return sum;
+}
+
 /* How far in time one feature is safe, from its gap now: 0 when it touches. */
 static double feature_step(const Slack *slack, const Gap *g, const PairBound *bound, double steer) {
     double aside = -g->margin - slack->gap; /* how far the foot is from where a touch could be */
@@ -115,9 +129,17 @@ static double feature_step(const Slack *slack, const Gap *g, const PairBound *bo
     return fmax(step, until_margin);
 }
 
+/* How long a point may go on in that is in already and goes slowly: until it turns round, if that cannot be seen; when the
+ * search begins, at least as long as a touch takes to go in by what can be told, since what began it had its say. */
+static double turning_step(const Slack *slack, const Gap *g, double acceleration, double steer, bool begins) {
+    double seen = 1e-3 * slack->gap;
+    if (acceleration > 0 && g->rate * g->rate < 2 * acceleration * seen) return -g->rate / acceleration;
+    return begins ? fmax(safe_step(seen, g->rate, steer), 1e-9) : 0;
+}
+
 /* The safe step of all features of two shapes. */
 static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, const Placed *pa, const Placed *pb,
-                          const PairBound *bound, double passing, double step) {
+                          const PairBound *bound, double passing, double time, double step, bool begins) {
     FeatureWalk walk = walk_features(s->world, shape_a, pa->at, shape_b, pb->at);
     for (Feature f; step > 0;) {
         double way = (1 + 1e-9) * step * bound->passing + s->slack->gap; /* what is farther cannot touch in the step */
@@ -131,6 +153,8 @@ static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, con
             f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
         double own = feature_step(s->slack, &g, bound, steer);
         const Placed *point_of = a_first ? pa : pb, *side_of = a_first ? pb : pa;
+        if (own <= 0 && g.rate >= -s->slack->speed) /* on its way in, slowly: unless it turns round at once */
+            own = turning_step(s->slack, &g, gap_acceleration(s, &f, &g, pa, pb, time), steer, begins);
         if (own <= 0 && !feature_faces(s->world, &f, &g, point_of, side_of, s->slack)) own = passing;
         if (own < passing && is_held(s, &f, &g, pa, pb)) own = passing;
         if (g.gap < -s->slack->gap && g.margin < -s->slack->gap) own = fmax(own, passing); /* in behind, and beside */
@@ -162,7 +186,7 @@ static double search_shapes(const Search *s, int32_t shape_a, int32_t shape_b, d
         double step = horizon - t;
         if (apart <=
             step * bound.closing) /* what passes by once mostly goes on to: longer steps, the longer it lasts */
-            step = shapes_step(s, shape_a, shape_b, &pa, &pb, &bound, PASSING * (1 + steps), step);
+            step = shapes_step(s, shape_a, shape_b, &pa, &pb, &bound, PASSING * (1 + steps), t, step, t == from);
         if (step <= 0) return t;
         if (steps > PATIENCE)
             step = fmax(step, 0.5 * s->slack->gap / bound.closing); /* creeping: half a slack at least */
