@@ -37,16 +37,8 @@ LENGTH = re.compile(NUMBER + r"\s*(px|pt|pc|mm|cm|in|em|ex|ch|rem|vw|vh|%)?")
 PATH = re.compile(r"\s*([mM]([\s,]*(" + NUMBER + r"|[MmZzLlHhVvCcSsQqTtAa]))*[\s,]*)?")
 POINTS = re.compile(r"([\s,]*" + NUMBER + r")*[\s,]*")
 COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])([^MmZzLlHhVvCcSsQqTtAa]*)")
-ARITY = {
-    "M": 2,
-    "L": 2,
-    "H": 1,
-    "V": 1,
-    "C": 6,
-    "S": 4,
-    "Q": 4,
-    "T": 2,
-}  # numbers after a command; A's may be glued
+# Numbers that each command takes, again and again; an arc's flags may stand without a space between.
+ARITY = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
 LENGTHS = {
     "rect": ("x", "y", "width", "height", "rx", "ry"),
     "circle": ("cx", "cy", "r"),
@@ -139,11 +131,8 @@ def _seen(element: Element) -> ET.Element:
     from xml.etree.ElementTree import Element as Node
 
     attributes = dict(element.attributes)
-    if element.name == "svg" and "viewBox" not in attributes:
-        # Without it lengths in per cent are not those of the page.
-        sides = [LENGTH.fullmatch(attributes.get(name, "")) for name in ("width", "height")]
-        if all(side is not None and side[3] in (None, "px") for side in sides):
-            attributes["viewBox"] = "0 0 " + " ".join(side[0].removesuffix("px") for side in sides if side)
+    if element.name == "svg":
+        attributes |= _page(attributes)
     node = Node(element.name, attributes)
     node.text = element.text
     for child in element.children:
@@ -153,6 +142,21 @@ def _seen(element: Element) -> ET.Element:
         elif child.name not in UNSEEN and NAME.fullmatch(child.name):
             node.append(_seen(child))
     return node
+
+
+def _page(attributes: dict[str, str]) -> dict[str, str]:
+    """The size of an <svg> where its view box alone says it, and the view box where the size alone does.
+
+    Without the one there is no page, and without the other lengths in per cent are not those of the page.
+    """
+    sides = [LENGTH.fullmatch(attributes.get(name, "").strip()) for name in ("width", "height")]
+    known = [side for side in sides if side is not None and side[3] != "%"]
+    box = re.split(r"[\s,]+", attributes.get("viewBox", "").strip())
+    if len(box) == 4 and not known:
+        return {"width": box[2], "height": box[3]}
+    if len(box) != 4 and len(known) == 2 and all(side[3] in (None, "px") for side in known):
+        return {"viewBox": "0 0 " + " ".join(side[0].removesuffix("px").strip() for side in known)}
+    return {}
 
 
 def _check(element: Element) -> None:

@@ -80,6 +80,21 @@ def test_the_page_has_the_files_size_and_units() -> None:
     np.testing.assert_allclose(sketch.strokes[0].points[-1], (sketch.width, sketch.height), rtol=1e-4)
 
 
+@pytest.mark.parametrize(
+    "attributes",
+    [
+        'viewBox="0 0 400 300"',
+        'width="100%" height="100%" viewBox="0,0,400,300"',
+        'width="400px" height="300"',
+    ],
+)
+def test_the_page_is_known_from_the_view_box_or_the_size(attributes: str) -> None:
+    paper = '<rect width="100%" height="100%" fill="white"/>'
+    sketch = load_sketch(svg(paper + '<line x2="50%" y2="50%" stroke="red"/>', attributes))
+    assert (sketch.width, sketch.height) == pytest.approx((400, 300))
+    assert [s.points.tolist() for s in sketch.strokes] == [[[0, 0], [200, 150]]]
+
+
 def test_what_is_not_seen_is_not_read_and_what_is_no_line_is_noted() -> None:
     content = """
       <defs><clipPath id="c"><rect width="9" height="9"/></clipPath></defs>
