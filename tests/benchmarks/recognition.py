@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import subprocess
-import sys
 import time
 import zlib
 from collections import Counter, defaultdict
@@ -24,9 +22,10 @@ from numpy.typing import NDArray
 
 from cli.progress import Progress
 from sim.scene import Body, Circle, Polygon
-from sketch import Recognition, Sketch, Stroke, recognize
+from sketch import Recognition, Sketch, Stroke, load_sketch, recognize
 from tests.benchmarks import corpus, pictured
 from tests.benchmarks.drawings import Drawing, Meant, differences, matched, writer
+from tests.benchmarks.effort import effort, resampled
 from tests.benchmarks.mechanisms import KINDS, NONSENSE, draw, nonsense
 
 __all__ = ["main"]
@@ -36,8 +35,8 @@ T = TypeVar("T")
 
 WRITERS = 20
 CHANGED = 120  # sketches that are drawn in other orders, sizes, ...
+PAPER = 4  # kinds of paper that a sketch is drawn on
 COMPOSED = 270  # sketches of real ink
-SIZES = (20, 50, 100, 200, 400)  # strokes
 BINS = (0.0, 0.6, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0)
 
 
@@ -51,18 +50,24 @@ def main(argv: list[str]) -> int:
     )
     p.add_argument("--count", type=int, default=504, metavar="N", help="made-up sketches (504)")
     p.add_argument("--seed", type=int, default=0, metavar="S", help="another seed draws others (0)")
+    p.add_argument(
+        "--paper", action="store_true", help="draw the made-up sketches on paper instead, before a camera"
+    )
     options = p.parse_args(argv)
     if options.corpus is not None and not (options.corpus / "dev").is_dir():
         p.error(f"--corpus {options.corpus}: there is no folder dev in it")
     with Progress() as progress:
         bench = Bench(progress, options.failures)
+        if options.paper:
+            bench.paper(options.count, options.seed)
+            return 0
         bench.mechanisms(options.count, options.seed)
         bench.changes(min(CHANGED, options.count), options.seed)
         bench.nonsense(options.count // 4, options.seed)
         if options.corpus is not None:
             bench.isolated(options.corpus)
             bench.composed(options.corpus, options.seed)
-        bench.costs(options.seed)
+        effort(bench.each, options.seed)
     return 0
 
 
@@ -73,7 +78,7 @@ def interval(right: int, count: int) -> tuple[float, float]:
     z, p = 1.96, right / count
     middle = p + z * z / (2 * count)
     half = z * math.sqrt(p * (1 - p) / count + z * z / (4 * count * count))
-    return (middle - half) / (1 + z * z / count), (middle + half) / (1 + z * z / count)
+    return max(middle - half, 0.0) / (1 + z * z / count), (middle + half) / (1 + z * z / count)
 
 
 def rate(right: int, count: int) -> str:
@@ -94,10 +99,11 @@ class Judged:
     seconds: float
 
 
-def judge(drawing: Drawing) -> Judged:
+def judge(drawing: Drawing, picture: bytes | None = None) -> Judged:
+    """Read a drawing, by its strokes or by a picture of it."""
     sketch = drawing.sketch
     begin = time.process_time()
-    recognition = recognize(sketch)
+    recognition = recognize(sketch if picture is None else load_sketch(picture))
     seconds = time.process_time() - begin
     hits = matched(drawing, recognition.scene)
     return Judged(drawing, recognition, hits, differences(drawing, recognition.scene, hits), seconds)
@@ -175,6 +181,35 @@ class Bench:
             _count_strays(self, tally[name], drawing, range(first, len(drawing.strokes)), f"{name}-{k}")
         _print_strays("made-up ink without a meaning, on a good sketch", tally)
 
+    def paper(self, count: int, seed: int) -> None:
+        """Sketches that are right as strokes, on each kind of paper."""
+        from tests.sketch.scan.paper import PAPERS, photographed
+
+        print(f"made-up mechanisms that are right as strokes, on paper, seed {seed}")
+        papers = list(PAPERS)
+        tally: dict[str, list[Judged]] = {name: [] for name in papers}
+        for k in self.each(range(count // PAPER), "drawings on paper"):
+            drawing = draw(k, seed + 4, WRITERS)
+            if judge(drawing).wrong:
+                continue
+            for i in range(PAPER):
+                name = papers[(PAPER * k + i) % len(papers)]
+                data, seen = photographed(drawing, PAPERS[name], np.random.default_rng([seed, k, i]))
+                j = judge(seen, data)
+                tally[name].append(j)
+                if j.wrong:
+                    self.show(
+                        f"{name} {seen.name} {k}".replace(" ", "-"), j.recognition, j.wrong, seen.bodies
+                    )
+        for name, judged in tally.items():
+            right = sum(not j.wrong for j in judged)
+            cpu = 1e3 * float(np.mean([j.seconds for j in judged] or [0.0]))
+            reasons = Counter(_reason(w) for j in judged for w in j.wrong[:1])
+            said = "; ".join(f"{text} ({n})" for text, n in reasons.most_common(2))
+            print(f"  {name:<30}{rate(right, len(judged))}{cpu:7.0f} ms  {said}")
+        every = [j for judged in tally.values() for j in judged]
+        print(f"  {'all':<30}{rate(sum(not j.wrong for j in every), len(every))}")
+
     # ------------------------------------------------------------ real ink
 
     def isolated(self, folder: Path) -> None:
@@ -226,24 +261,6 @@ class Bench:
         _kinds(judged)
         _confusion(judged)
         _reliability(_scores(judged))
-
-    # ------------------------------------------------------------ time and memory
-
-    def costs(self, seed: int) -> None:
-        print("\nCPU time, the least of three [ms]")
-        print(f"  {'strokes':<28}" + "".join(f"{n:>9}" for n in SIZES))
-        for name, page in (("machines side by side", _machines), ("lines across each other", _crossing)):
-            times = []
-            for n in self.each(SIZES, name):
-                sketch = page(n, seed)
-                runs = 3 if n <= 200 else 1
-                times.append(min(_seconds(recognize, sketch) for _ in range(runs)))
-            print(f"  {name:<28}" + "".join(f"{1e3 * t:9.1f}" for t in times))
-        used = subprocess.run(
-            [sys.executable, "-c", _MEMORY], check=True, capture_output=True, text=True, env=_environment()
-        ).stdout.split()
-        print(f"memory beyond the ink: {used[0]} MB for 200 strokes of 500 points", end="")
-        print(f", {used[1]} MB for a stroke of a million, which takes {used[2]} s CPU")
 
 
 # ---------------------------------------------------------------- tables
@@ -367,13 +384,6 @@ def _points(count: int) -> Callable[[Drawing, np.random.Generator], Drawing]:
     return lambda drawing, _: replace(drawing, strokes=[resampled(s, count) for s in drawing.strokes])
 
 
-def resampled(stroke: Array, count: int) -> Array:
-    """So many points along a stroke, at equal distances."""
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(stroke, axis=0).T))])
-    t = np.linspace(0, along[-1], count)
-    return np.stack([np.interp(t, along, stroke[:, k]) for k in (0, 1)], axis=1)
-
-
 CHANGES: dict[str, Callable[[Drawing, np.random.Generator], Drawing]] = {
     "strokes in another order": _shuffled,
     "strokes reversed": lambda d, _: replace(d, strokes=[s[::-1] for s in d.strokes]),
@@ -422,53 +432,3 @@ def _kind(kind: str, sides: int, meant: str | None) -> str:
     if kind in ("rectangle", "polygon"):
         return str(sides) if sides < 8 else "round"
     return kind
-
-
-def _machines(count: int, seed: int) -> Sketch:
-    """Mechanisms side by side, with so many strokes in all."""
-    strokes: list[Stroke] = []
-    k = 0
-    while len(strokes) < count:
-        place = np.array([1300.0 * (k % 4), 740.0 * (k // 4)])
-        strokes += [Stroke(s + place) for s in draw(k, seed + 3, WRITERS).strokes]
-        k += 1
-    return Sketch(strokes[:count])
-
-
-def _crossing(count: int, seed: int) -> Sketch:
-    """Long lines at random, each across half of the others."""
-    rng = np.random.default_rng([seed, count])
-    return Sketch([Stroke(resampled(rng.uniform(0, 1000, (2, 2)), 20)) for _ in range(count)])
-
-
-def _seconds(call: Callable[[Sketch], object], sketch: Sketch) -> float:
-    begin = time.process_time()
-    call(sketch)
-    return time.process_time() - begin
-
-
-_MEMORY = """
-import time, tracemalloc, numpy as np
-from sketch import Sketch, Stroke, recognize
-from tests.benchmarks.recognition import _machines, resampled
-recognize(_machines(20, 0))
-sketch = Sketch([Stroke(resampled(s.points, 500)) for s in _machines(200, 0).strokes])
-t = np.linspace(0, 6.28, 1_000_000)
-circle = Sketch([Stroke(np.stack([100 * np.cos(t), 100 * np.sin(t)], axis=1))])
-begin = time.process_time()
-recognize(circle)
-seconds = time.process_time() - begin
-tracemalloc.start()
-for page in (sketch, circle):
-    before = tracemalloc.get_traced_memory()[0]
-    tracemalloc.reset_peak()
-    recognize(page)
-    print(round((tracemalloc.get_traced_memory()[1] - before) / 1e6))
-print(round(seconds, 2))
-"""
-
-
-def _environment() -> dict[str, str]:
-    import os
-
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
