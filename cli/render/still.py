@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["png", "strobe"]
 
-FLASHES = 16  # at least so many; at most 2.5 times as many, because their interval is a round number
-WIDTHS, CLOSEST = 0.7, 14.0  # between two ghosts: of a body's width, and [units of the pen]
+FLASHES = 12  # at least so many; at most 2.5 times as many, because their interval is a round number
+WIDTHS, CLOSEST = 0.35, 10.0  # between two ghosts: of a body's width, and [units of the pen]
 FADE = 0.62  # how pale a ghost is
 
 
@@ -61,7 +61,7 @@ def strobe(figure: Figure, motion: Trajectory, trails: bool = False) -> Canvas:
     if trails:
         Trails(figure, motion).extend(canvas, end)
     figure.fill(canvas, final)
-    figure.caption(canvas, f"{step * interval:.3g} s or more apart, to {motion.times[end]:.3g} s")
+    figure.caption(canvas, f"every {step * interval:.3g} s, to {motion.times[end]:.3g} s")
     return canvas
 
 
@@ -82,7 +82,7 @@ def _machines(figure: Figure) -> list[list[int]]:
 
 
 def _apart(figure: Figure, parts: list[int]) -> float:
-    """How far a point of a machine has to move for another ghost [fixed-point]: most of its narrowest body."""
+    """How far a point of a machine has to move for another ghost [fixed-point]: a share of its narrowest body."""
     widths = []
     for k in {figure.parts[i].body for i in parts}:
         shape = figure.scene.bodies[k].shape
