@@ -7,8 +7,9 @@ import math
 import struct
 import sys
 from array import array
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -210,11 +211,42 @@ def _run(core: ctypes.CDLL, scene: Scene, samples: int, fps: float, tolerance: f
     )
 
 
-def _events(core: ctypes.CDLL, sim: int, ids: list[str]) -> list[Event]:
+class _Events(Sequence[Event]):
+    """A run's events, made from the core's records when they are first looked at: a pile has thousands."""
+
+    def __init__(self, raw: bytes, ids: list[str]) -> None:
+        self._raw, self._ids = raw, ids
+        self._made: list[Event] | None = None
+
+    def _all(self) -> list[Event]:
+        if self._made is None:
+            name: list[str | None] = [*self._ids, None]  # index -1: none
+            self._made = [
+                Event(time, _EVENT_KINDS[kind], (self._ids[a], name[b]), (x, y), (jx, jy))
+                for time, kind, a, b, _, x, y, jx, jy in _EVENT.iter_unpack(self._raw)
+            ]
+        return self._made
+
+    def __len__(self) -> int:
+        return len(self._raw) // _EVENT.size
+
+    @overload
+    def __getitem__(self, index: int) -> Event: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Event]: ...
+    def __getitem__(self, index: int | slice) -> Event | list[Event]:
+        return self._all()[index]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and self._all() == list(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return repr(self._all())
+
+
+def _events(core: ctypes.CDLL, sim: int, ids: list[str]) -> _Events:
     raw = ctypes.create_string_buffer(_EVENT.size * core.sim_event_count(sim))
     core.sim_events(sim, raw)
-    name: list[str | None] = [*ids, None]  # index -1: none
-    return [
-        Event(time, _EVENT_KINDS[kind], (ids[a], name[b]), (x, y), (jx, jy))
-        for time, kind, a, b, _, x, y, jx, jy in _EVENT.iter_unpack(raw)
-    ]
+    return _Events(raw.raw, ids)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -60,7 +61,7 @@ class Trajectory:
     angular_velocities: Array
     body_ids: list[str]
     energy: Array
-    events: list[Event] = field(default_factory=list)
+    events: Sequence[Event] = field(default_factory=list)
     profile: dict[str, float] = field(default_factory=dict)
 
     def __len__(self) -> int:

@@ -8,9 +8,10 @@ static const int32_t SUBSTEPS = 4;     /* of a frame */
 static const int32_t PASSES = 6;       /* between looks for new contacts, at most */
 static const int32_t LOOKS = 6;        /* of a substep, at most */
 
-Crowd *crowd_create(const World *world) {
+Crowd *crowd_create(const World *world, Recorder *recorder) {
     Crowd *crowd = calloc(1, sizeof *crowd);
     if (!crowd) return NULL;
+    crowd->recorder = recorder;
     crowd->body_count = world->body_count;
     crowd->shape_count = world->shape_count;
     crowd->piece_count = world->piece_count;
@@ -94,9 +95,10 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     pivots_join(&crowd->pivots, mover, 0, NULL);
     pivots_solve(&crowd->pivots, mover);
     if (bounces) contacts_bounce(crowd->contact, crowd->contact_count, mover);
+    if (bounces) status = events_tell_impacts(crowd, world);
     world->profile.crowd_steps++;
     world->profile.crowd_contacts += crowd->contact_count;
-    return SIM_OK;
+    return status;
 }
 
 static void store(Crowd *crowd, World *world) {
@@ -110,7 +112,8 @@ static void store(Crowd *crowd, World *world) {
     }
 }
 
-static int frame(Crowd *crowd, World *world, double dt) {
+/* From `end` - dt on. */
+static int frame(Crowd *crowd, World *world, double dt, double end) {
     int32_t substeps = (int32_t)ceil(SUBSTEPS * dt / FRAME - 1e-9);
     if (substeps < 1) substeps = 1;
     double h = dt / substeps;
@@ -123,12 +126,17 @@ static int frame(Crowd *crowd, World *world, double dt) {
     if (status != SIM_OK) return status;
     pivots_factor(&crowd->pivots, crowd->mover);
     contacts_limit(crowd->contact, crowd->contact_count, crowd->mover, h);
-    for (int32_t k = 0; k < substeps && status == SIM_OK; k++) status = substep(crowd, world, dt - k * h, h);
+    for (int32_t k = 0; k < substeps && status == SIM_OK; k++) {
+        crowd->time = k + 1 < substeps ? end - (substeps - 1 - k) * h : end;
+        status = substep(crowd, world, dt - k * h, h);
+    }
     if (status != SIM_OK) return status;
     status = touch_finish(crowd, world, dt);
     if (status != SIM_OK) return status;
     store(crowd, world);
-    rest_update(crowd, world, dt);
+    status = events_tell_contacts(crowd, world);
+    if (status == SIM_OK) status = rest_update(crowd, world, dt);
+    if (status != SIM_OK) return status;
     rest_wake_nudged(crowd, world);
     return memory_store(&crowd->memory, crowd->contact, crowd->contact_count, crowd->mover);
 }
@@ -138,7 +146,8 @@ static void release(Crowd *crowd, World *world) {
         if (crowd_moves(world, i) && !crowd->touched[i]) world->body[i].mode = MODE_FLIGHT;
 }
 
-int crowd_step(Crowd *crowd, World *world, double dt, double tolerance) {
+int crowd_step(Crowd *crowd, World *world, double from, double to, double tolerance) {
+    double dt = to - from;
     bool any = false;
     for (int32_t i = 0; i < world->body_count && !any; i++) any = crowd_moves(world, i);
     if (!any) return SIM_OK;
@@ -146,7 +155,7 @@ int crowd_step(Crowd *crowd, World *world, double dt, double tolerance) {
     int32_t frames = (int32_t)ceil(dt / FRAME - 1e-6);
     if (frames < 1) frames = 1;
     for (int32_t k = 0; k < frames; k++) {
-        int status = frame(crowd, world, dt / frames);
+        int status = frame(crowd, world, dt / frames, k + 1 < frames ? from + (k + 1) * (dt / frames) : to);
         if (status != SIM_OK) return status;
     }
     release(crowd, world);

@@ -110,5 +110,6 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     c->rolling =
         slow(world, near->a) && slow(world, near->b) ? ROLLING * reach * (c->friction < 1 ? c->friction : 1) : 0;
     c->key = pair_key(near->piece_a, near->piece_b);
+    c->touching = events_touching(crowd, world, c);
     contact_set_points(crowd, world, c, m, memory_recall(&crowd->memory, c->key));
 }

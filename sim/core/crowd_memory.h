@@ -2,27 +2,8 @@
 #ifndef CROWD_MEMORY_H
 #define CROWD_MEMORY_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "crowd_rows.h"
-
-static inline uint64_t pair_key(int32_t piece_a, int32_t piece_b) {
-    return (uint64_t)(uint32_t)piece_a << 32 | (uint32_t)piece_b;
-}
-
-/* Numbers by pair. */
-typedef struct Index {
-    uint64_t *key; /* open addressing; 0: empty, as no pair is of piece 0 twice */
-    int32_t *value;
-    int32_t slots, count;
-} Index;
-
-void index_destroy(Index *index);
-int index_room(Index *index, int32_t count); /* keeps what is in it */
-void index_clear(Index *index);
-bool index_add(Index *index, uint64_t key, int32_t value); /* whether the key is new; there must be room */
-int32_t index_find(const Index *index, uint64_t key);      /* -1: not there */
+#include "pair_index.h"
 
 /* The impulses of a contact, for warm starting. */
 typedef struct Record {
@@ -30,6 +11,8 @@ typedef struct Record {
     int32_t a, b, count;
     double lever[2]; /* where along the contact a point is: how far from a's centre */
     double impulse_n[2], impulse_t;
+    bool touching;   /* as has been told */
+    bool seen;       /* recalled in this frame */
 } Record;
 
 Record contact_record(const Contact *contact);
@@ -49,7 +32,7 @@ int memory_store(Memory *memory, const Contact *contact, int32_t count, const Mo
 /* Impulses are of a substep: another length of it scales them. */
 void memory_scale(Memory *memory, double by);
 
-/* NULL when nothing is known of the pair. */
-const Record *memory_recall(const Memory *memory, uint64_t key);
+/* NULL when nothing is known of the pair; what is, is marked as seen. */
+const Record *memory_recall(Memory *memory, uint64_t key);
 
 #endif

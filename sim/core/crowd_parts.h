@@ -1,5 +1,5 @@
 /* What the parts of the crowd share: crowd.c steps, crowd_touch.c finds contacts, crowd_contact.c makes them,
- * crowd_rest.c puts bodies to rest. */
+ * crowd_rest.c puts bodies to rest, crowd_events.c tells what happened. */
 #ifndef CROWD_PARTS_H
 #define CROWD_PARTS_H
 
@@ -26,7 +26,9 @@ typedef struct Range {
 } Range;
 
 struct Crowd {
+    Recorder *recorder;  /* or NULL */
     double tolerance;
+    double time;         /* when the substep ends */
     double substep;      /* the last one's length: impulses are of that long */
     int32_t body_count, shape_count, piece_count;
     Mover *mover;        /* by body */
@@ -85,12 +87,18 @@ void touch_refresh(Crowd *crowd, World *world, double left);
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found, bool *bounces);
 int touch_finish(Crowd *crowd, const World *world, double dt);
 
+/* crowd_events.c */
+bool events_touching(const Crowd *crowd, const World *world, const Contact *contact);
+int events_tell_impacts(Crowd *crowd, const World *world);
+int events_tell_contacts(Crowd *crowd, const World *world);
+int events_tell_rest(Crowd *crowd, const World *world, int32_t body);
+
 /* crowd_rest.c */
 int rest_create(Crowd *crowd, const World *world);
 void rest_destroy(Crowd *crowd);
 bool rest_wake_joined(Crowd *crowd, World *world);
 bool rest_disturb(Crowd *crowd, World *world, int32_t body, int32_t by, bool close);
 void rest_wake_nudged(Crowd *crowd, World *world);
-void rest_update(Crowd *crowd, World *world, double dt);
+int rest_update(Crowd *crowd, World *world, double dt);
 
 #endif

@@ -167,7 +167,7 @@ static void update_still(Crowd *crowd, const World *world, double dt) {
     }
 }
 
-void rest_update(Crowd *crowd, World *world, double dt) {
+int rest_update(Crowd *crowd, World *world, double dt) {
     update_still(crowd, world, dt);
     find_islands(crowd, world);
     find_island_times(crowd, world);
@@ -186,5 +186,8 @@ void rest_update(Crowd *crowd, World *world, double dt) {
             crowd->ring[i] = crowd->ring[r];
             crowd->ring[r] = i;
         }
+        int status = events_tell_rest(crowd, world, i);
+        if (status != SIM_OK) return status;
     }
+    return SIM_OK;
 }

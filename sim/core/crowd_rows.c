@@ -110,7 +110,6 @@ bool contacts_measure(Contact *contact, int32_t count, const Mover *mover, doubl
     bool any = false;
     for (int32_t i = 0; i < count; i++) {
         Contact *c = &contact[i];
-        if (c->elasticity <= 0) continue;
         c->approach = both(0);
         if (c->impulse_n[0] > 0 && (c->impulse_n[1] > 0 || c->count < 2)) continue;
         Meeting m = meet(&mover[c->a], &mover[c->b]);
@@ -261,7 +260,6 @@ void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
             Meeting m = meet(&mover[c->a], &mover[c->b]);
             solve_normal(c, k, &m, -c->elasticity * c->approach[k]);
             leave(&m, &mover[c->a], &mover[c->b]);
-            c->approach[k] = 0;
         }
     }
 }

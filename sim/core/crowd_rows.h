@@ -47,6 +47,7 @@ typedef struct Contact {
     double turned; /* of b against a when the points were found, in this frame */
     Vec moved; /* likewise */
     uint64_t key; /* the pieces */
+    bool touching; /* as has been told (crowd_events.c) */
 } Contact;
 
 static inline bool contact_presses(const Contact *c) { return c->impulse_n[0] > 0 || c->impulse_n[1] > 0; }

@@ -11,6 +11,7 @@ int recorder_create(Recorder *r, const World *world, const SimOptions *options, 
 void recorder_destroy(Recorder *r) {
     free(r->next);
     free(r->event);
+    index_destroy(&r->touching);
     *r = (Recorder){0};
 }
 
@@ -53,7 +54,31 @@ void record_state(Recorder *r, int32_t body, double time) {
     r->next[body] = k;
 }
 
+static uint64_t source_key(int32_t a, int32_t b) { return a < b ? pair_key(a, b) : pair_key(b, a); }
+
+bool record_touches(const Recorder *r, int32_t a, int32_t b) { return index_find(&r->touching, source_key(a, b)) == 1; }
+
+/* Note that a contact begins or ends. Whether that is news. */
+static int note_contact(Recorder *r, const SimEvent *event, bool *news) {
+    int32_t begins = event->kind == SIM_CONTACT_BEGUN;
+    uint64_t key = source_key(event->body[0], event->body[1]);
+    int32_t *known = index_at(&r->touching, key);
+    *news = known ? *known != begins : begins;
+    if (known) {
+        *known = begins;
+    } else if (begins) {
+        if (index_room(&r->touching, r->touching.count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
+        index_add(&r->touching, key, 1);
+    }
+    return SIM_OK;
+}
+
 int record_event(Recorder *r, const SimEvent *event) {
+    if (event->kind == SIM_CONTACT_BEGUN || event->kind == SIM_CONTACT_ENDED) {
+        bool news;
+        int status = note_contact(r, event, &news);
+        if (status != SIM_OK || !news) return status;
+    }
     if (event->time > (double)(r->sample_count - 1) / r->fps) return SIM_OK;
     if (r->event_count == r->event_capacity) {
         int64_t capacity = r->event_capacity ? 2 * r->event_capacity : 64;
@@ -64,4 +89,14 @@ int record_event(Recorder *r, const SimEvent *event) {
     }
     r->event[r->event_count++] = *event;
     return SIM_OK;
+}
+
+void record_sort_events(
+    Recorder *r) { /* nearly in order: only the crowd's last steps and what is beside it interleave */
+    for (int64_t k = 1; k < r->event_count; k++) {
+        SimEvent event = r->event[k];
+        int64_t at = k;
+        for (; at > 0 && r->event[at - 1].time > event.time; at--) r->event[at] = r->event[at - 1];
+        r->event[at] = event;
+    }
 }

@@ -3,6 +3,7 @@
 #define RECORD_H
 
 #include "motion.h"
+#include "pair_index.h"
 
 typedef struct Recorder {
     const World *world;
@@ -12,6 +13,7 @@ typedef struct Recorder {
     int64_t *next;  /* of every body: its first sample that is not written yet */
     SimEvent *event;
     int64_t event_count, event_capacity;
+    Index touching; /* by pair of sources, the lower first: 1 while in contact, as told */
 } Recorder;
 
 int recorder_create(Recorder *recorder, const World *world, const SimOptions *options, double *frames);
@@ -24,6 +26,14 @@ void record_motion(Recorder *recorder, int32_t body, const Motion *motion, doubl
 void record_state(Recorder *recorder, int32_t body, double time);
 
 /* Events after the last sample are left out. */
+/* A contact that begins where it was told to hold already is not told again, nor is an end of none: a pair may go from exact
+ * motion to the crowd and back. */
 int record_event(Recorder *recorder, const SimEvent *event);
+
+/* Whether a contact of the two sources was told to begin, and not to end. */
+bool record_touches(const Recorder *recorder, int32_t source_a, int32_t source_b);
+
+/* Put the events in the order of time. */
+void record_sort_events(Recorder *recorder);
 
 #endif

@@ -108,12 +108,12 @@ static int step_crowd(Sim *sim, double from, double to, double tolerance) {
     if (!sim->crowd) {
         int status = world->piece ? SIM_OK : world_decompose(world);
         if (status != SIM_OK) return status;
-        if (!(sim->crowd = crowd_create(world))) return SIM_OUT_OF_MEMORY;
+        if (!(sim->crowd = crowd_create(world, &sim->recorder))) return SIM_OUT_OF_MEMORY;
     }
     for (int32_t i = 1; i < world->body_count; i++)
         if (sim->entering[i]) world->body[i].mode = MODE_SMOOTH;
     double start = seconds_now();
-    int status = crowd_step(sim->crowd, world, to - from, tolerance);
+    int status = crowd_step(sim->crowd, world, from, to, tolerance);
     world->profile.crowd_time += seconds_now() - start;
     for (int32_t i = 1; i < world->body_count && status == SIM_OK; i++)
         if (sim->entering[i])
@@ -206,6 +206,7 @@ int32_t sim_run(Sim *sim, const SimOptions *options, double *frames, double *ene
     if (status == SIM_OK) status = recorder_create(&sim->recorder, world, options, frames);
     if (status == SIM_OK) status = exact_create(&sim->exact, world, &sim->recorder, options->tolerance);
     if (status == SIM_OK) status = advance(sim, options, end);
+    record_sort_events(&sim->recorder);
     if (status == SIM_OK && !find_energy(sim, options->sample_count, frames, energy)) status = SIM_NOT_FINITE;
     world->profile.separate_time = separated - start;
     world->profile.smooth_evals = sim->exact.smooth.evals;

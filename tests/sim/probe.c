@@ -50,7 +50,7 @@ PROBE int32_t probe_crowd(const SimInput *input, double dt, int32_t samples, dou
     if (status != SIM_OK) return status;
     status = world_separate(&world, tolerance);
     if (status == SIM_OK) status = world_decompose(&world);
-    Crowd *crowd = status == SIM_OK ? crowd_create(&world) : NULL;
+    Crowd *crowd = status == SIM_OK ? crowd_create(&world, NULL) : NULL;
     if (!crowd) status = SIM_OUT_OF_MEMORY;
     for (int32_t i = 1; i < world.body_count; i++) world.body[i].mode = MODE_CROWD;
     for (int32_t k = 0; k < samples && status == SIM_OK; k++) {
@@ -60,7 +60,7 @@ PROBE int32_t probe_crowd(const SimInput *input, double dt, int32_t samples, dou
             modes[k * world.source_count + i] = body->mode;
             if (body->mode == MODE_FLIGHT) body->mode = MODE_CROWD;
         }
-        if (k + 1 < samples) status = crowd_step(crowd, &world, dt, tolerance);
+        if (k + 1 < samples) status = crowd_step(crowd, &world, (double)k * dt, (double)(k + 1) * dt, tolerance);
     }
     crowd_destroy(crowd);
     world_destroy(&world);
