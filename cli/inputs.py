@@ -64,7 +64,8 @@ def read(source: str) -> bytes:
     except FileNotFoundError:
         raise InputError(source or "''", "there is no such file", kind="file") from None
     except IsADirectoryError:
-        raise InputError(source, "this is a folder, not a file", kind="file") from None
+        hint = "`sketchsim batch` runs all that is in a folder"
+        raise InputError(source, "this is a folder, not a file", hint, kind="file") from None
     except OSError as e:
         raise InputError(source, (e.strerror or str(e)).lower(), kind="file") from None
 

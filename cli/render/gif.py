@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -23,7 +24,7 @@ Bytes = NDArray[np.uint8]
 
 FASTEST = 25  # frames a second; GIF counts hundredths of a second, and browsers slow down below two of them
 EXACT = 96  # the palette's colours that are taken over as they are: those of the large areas
-SAMPLES = 8  # frames that the palette is chosen from
+SAMPLES, PIXELS = 8, 2_000_000  # frames, and at most so many pixels of them, that the palette is chosen from
 
 
 def write_gif(
@@ -76,7 +77,8 @@ def choose_palette(pictures: list[Bytes]) -> Bytes:
     """256 colours (256, 3), BGR: the commonest as they are, the others by the centres of their clusters."""
     import cv2
 
-    pixels = np.concatenate([picture.reshape(-1, 3) for picture in pictures])
+    every = math.ceil(math.sqrt(sum(picture[..., 0].size for picture in pictures) / PIXELS))
+    pixels = np.concatenate([picture[::every, ::every].reshape(-1, 3) for picture in pictures])
     codes = pixels.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
     found, counts = np.unique(codes, return_counts=True)
     found = found[np.argsort(-counts, kind="stable")]

@@ -131,7 +131,10 @@ def test_input_that_cannot_be_read(
     assert main([command, "nothing.json"]) == 3
     assert stderr_of(capsys) == ["error: nothing.json: there is no such file [file]"]
     assert main([command, "."]) == 3
-    assert stderr_of(capsys) == ["error: .: this is a folder, not a file [file]"]
+    assert stderr_of(capsys) == [
+        "error: .: this is a folder, not a file [file]",
+        "hint: `sketchsim batch` runs all that is in a folder",
+    ]
     assert not list(tmp_path.iterdir())
 
 
