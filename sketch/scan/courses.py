@@ -31,6 +31,10 @@ class Course:
     closed: bool = False
     borrowed: Points | None = None
 
+    def reversed(self) -> Course:
+        """An open course from its other end."""
+        return Course([(e, 1 - side) for e, side in self.steps[::-1]], [way[::-1] for way in self.via[::-1]])
+
 
 def follow(graph: Graph, links: Links, inner: set[int]) -> list[Course]:
     """Follow the links from edge to edge: first from ends, then around what closes on itself.

@@ -126,6 +126,21 @@ class Layout:
         way, edges = self.shortest(b, a, SHARED_SIDE * self.length(course), without=own)
         return None if a != b and not edges else (way, edges)
 
+    def joined(self, first: Course, second: Course) -> list[Course]:
+        """Two open courses as one, where other ink leads from an end of one to an end of the other."""
+        longest = SHARED_SIDE * (self.length(first) + self.length(second))
+        own = {e for e, _ in first.steps + second.steps}
+        out = []
+        for a in (first, first.reversed()):
+            for b in (second, second.reversed()):
+                start, goal = self.ends(a)[1], self.ends(b)[0]
+                if start < 0 or goal < 0 or start == goal:
+                    continue
+                way, edges = self.shortest(start, goal, longest, without=own)
+                if edges:
+                    out.append(Course(a.steps + b.steps, [*a.via, way, *b.via]))
+        return out
+
     def borrow(self, course: Course, courses: list[Course]) -> None:
         """Close an outline that rests on other ink with both its ends: that ink is its missing side too.
 

@@ -50,11 +50,14 @@ class Ways:
         junctions = find_junctions(graph, pen)
         self._graph = graph
         self._inner = {e for junction in junctions for e in junction.bridges}
+        smoothest = [(junction, junction.pairs) for junction in junctions]
         self._choices = close_outlines(graph, junctions, pen)
         self._layout = Layout(graph, junctions, pen)
         self._links: Links = {}
-        for junction in junctions:
+        self._smoothest: Links = {}
+        for junction, pairs in smoothest:
             self._links.update(self._layout.links(junction, junction.pairs))
+            self._smoothest.update(self._layout.links(junction, pairs))
 
     def likeliest(self, without: frozenset[int] = frozenset()) -> list[Way]:
         """The strokes of the best pairings, along the edges that have other ink than `without`."""
@@ -78,6 +81,16 @@ class Ways:
                 out += self._closed(course, self._links)
             else:
                 out.append(self._way(replace(course, borrowed=None), self._links))
+        long = SIDE * self._layout.pen
+        sides = [c for c in known if not c.closed and self._layout.length(c) > long and max(self._layout.ends(c)) >= 0]
+        for first, second in list(combinations(sides, 2))[:MOST]:
+            for course in self._layout.joined(first, second):
+                out += [self._way(course, self._links), *self._closed(course, self._links)]
+        for course in follow(self._graph, self._smoothest, self._inner):
+            signature = _signature(course)
+            if signature not in seen and not self._layout.is_crumb(course):
+                seen.add(signature)
+                out += [self._way(course, self._smoothest), *self._closed(course, self._smoothest)]
         for choices in _combined(self._choices):
             links = dict(self._links)
             for choice in choices:
