@@ -31,6 +31,7 @@ CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to 
 OPEN = 0.25  # the share of the rays beyond the belt that must meet paper: a ring stands out from a scribble
 CLEAR = 0.8  # and with that within the belt
 BLOT = 0.6  # one that is filled must stand out by so much, and be as round
+ALL_ROUND = 0.7  # of its length: an edge that has so much of the ring is the ring
 LEAST_ROUND = -0.4
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
@@ -177,9 +178,14 @@ def take_rings(
         inside = set(np.flatnonzero(np.hypot(*(graph.nodes - middle).T) < reach).tolist())
         within = [np.hypot(*(edge.points - middle).T) < reach for edge in graph.edges]
         crossing = [k for k, points in enumerate(within) if points.any()]
-        if not crossing or (len(crossing) == 1 and within[crossing[0]].mean() > 0.5):
+        around = float(np.hypot(*np.diff(ring.points, axis=0).T).sum())
+        if not crossing or (len(crossing) == 1 and np.count_nonzero(within[crossing[0]]) > ALL_ROUND * around):
             continue  # a better ring has it all, or it stands by itself
-        taken.append(replace(ring, ink=_take(graph, middle, reach, inside, pen, names, parts)))
+        ink = _take(graph, middle, reach, inside, pen, names, parts)
+        hidden = round(around) - sum(map(len, ink.values()))
+        if hidden > 0:  # thinning leaves less of a blot than was drawn
+            ink[next(names)] = ring.points[np.arange(hidden) % len(ring.points)]
+        taken.append(replace(ring, ink=ink))
     if not taken:
         return None, []
     near = _reached(whole, [edge.ink.keys() != parts[k].keys() for k, edge in enumerate(whole)])
