@@ -82,7 +82,11 @@ class Ways:
             else:
                 out.append(self._way(replace(course, borrowed=None), self._links))
         long = SIDE * self._layout.pen
-        sides = [c for c in known if not c.closed and self._layout.length(c) > long and max(self._layout.ends(c)) >= 0]
+        sides = [
+            c
+            for c in known
+            if not c.closed and self._layout.length(c) > long and max(self._layout.ends(c)) >= 0
+        ]
         for first, second in list(combinations(sides, 2))[:MOST]:
             for course in self._layout.joined(first, second):
                 out += [self._way(course, self._links), *self._closed(course, self._links)]

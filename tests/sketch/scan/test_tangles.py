@@ -1,0 +1,117 @@
+"""Ink that touches, crosses and rests on other ink: read from paper as it would be read from strokes."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sheets import drawn, encoded
+
+from sim.scene import Polygon, Scene
+from sketch.recognize import recognize
+from sketch.scan import read_picture
+from sketch.scan.binding import thin, trace
+from sketch.scan.graph import build_graph
+from sketch.scan.ways import Ways
+
+Line = list[tuple[float, float]]
+PENS = [2.5, 4.0, 5.5]
+BOX: Line = [(100, 200), (400, 206), (397, 300), (103, 296), (100, 200)]
+
+
+def circle(x: float, y: float, radius: float) -> Line:
+    turn = np.linspace(0, 2 * np.pi, 60)
+    return [(x + radius * float(np.cos(a)), y + radius * float(np.sin(a))) for a in turn]
+
+
+def inked(lines: list[Line], pen: float, size: tuple[int, int] = (420, 520)) -> NDArray[np.float64]:
+    """1 where there is ink, 0 on paper, shape `size`, smooth between."""
+    image = np.zeros((size[0] * 4, size[1] * 4), np.uint8)
+    for line in lines:
+        at = np.round((np.array(line) + 0.5) * 4 - 0.5).astype(np.int32)
+        cv2.polylines(image, [at], False, 255, round(4 * pen))
+    return cv2.resize(image, size[::-1], interpolation=cv2.INTER_AREA) / 255.0
+
+
+def read(lines: list[Line], pen: float) -> Scene:
+    return recognize(read_picture(encoded(drawn(inked(lines, pen), noise=1.5)))).scene
+
+
+def kinds(scene: Scene) -> list[str]:
+    found = []
+    for body in scene.bodies:
+        shape = body.shape
+        corners = f"{len(shape.vertices)} sides" if isinstance(shape, Polygon) else ""
+        found.append(corners or type(shape).__name__.lower())
+    return sorted(found)
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_a_ball_on_the_tip_of_a_ramp_is_no_figure_of_eight(pen: float) -> None:
+    ramp: Line = [(80, 360), (255, 200), (440, 364), (80, 360)]
+    scene = read([ramp, circle(256, 168, 32)], pen)
+    assert kinds(scene) == ["3 sides", "circle"]
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_a_box_without_a_lid_has_the_bottom_of_the_box_on_it(pen: float) -> None:
+    upper: Line = [(130, 80), (370, 84), (366, 200), (134, 196), (130, 80)]
+    lower: Line = [(160, 197), (163, 320), (330, 322), (333, 199)]
+    scene = read([upper, lower], pen)
+    assert kinds(scene) == ["rectangle", "rectangle"]
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_a_box_in_two_strokes_may_lean_on_another(pen: float) -> None:
+    upper: Line = [(130, 80), (370, 84), (366, 200), (134, 196), (130, 80)]
+    left: Line = [(160, 197), (163, 318)]
+    scene = read([upper, left, [(160, 322), (330, 322), (333, 199)]], pen)
+    assert kinds(scene) == ["rectangle", "rectangle"]
+
+
+@pytest.mark.parametrize("pen", PENS)
+@pytest.mark.parametrize("shift", [0, 18, 34])
+def test_a_cross_anchors_the_box_whose_side_it_touches(pen: float, shift: float) -> None:
+    bars: list[Line] = [[(228, 228 - shift), (272, 272 - shift)], [(272, 228 - shift), (228, 272 - shift)]]
+    scene = read([BOX, *bars], pen)
+    assert kinds(scene) == ["rectangle"]
+    assert scene.bodies[0].anchored
+
+
+@pytest.mark.parametrize("pen", PENS)
+@pytest.mark.parametrize("radius", [7.0, 10.0])
+@pytest.mark.parametrize("up", [-6, 0, 14])
+def test_a_small_ring_at_the_tip_of_a_foot_is_a_pivot(pen: float, radius: float, up: float) -> None:
+    foot: Line = [(160, 380), (250, 215), (345, 384), (160, 380)]
+    scene = read([BOX, foot, circle(250, 240 - up, radius)], pen)
+    assert kinds(scene) == ["3 sides", "rectangle"]
+    assert len(scene.joints) == 1
+    pixels = np.array(scene.joints[0].position) * (1, -1) * 52  # the longer side is ten metres
+    assert np.hypot(*(pixels - (250, 240 - up))) < pen
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_a_wheel_that_runs_along_a_frame_keeps_its_roundness(pen: float) -> None:
+    scene = read([BOX, circle(170, 300, 40), circle(330, 300, 40)], pen)
+    assert kinds(scene) == ["circle", "circle", "rectangle"]
+
+
+def test_the_likeliest_strokes_share_no_ink_and_take_all_of_it() -> None:
+    mask = (inked([BOX, circle(170, 300, 40), [(60, 180), (420, 330)]], 4.0) > 0.5).astype(np.uint8)
+    skeleton, size = thin(mask)
+    graph = build_graph(trace(skeleton, size), cv2.distanceTransform(mask, cv2.DIST_L2, 3), 4.0)
+    for name, edge in enumerate(graph.edges):
+        edge.ink = {name: edge.points}
+    ways = Ways(graph, 4.0)
+    inks = [set(way.ink) for way in ways.likeliest()]
+    everything = set().union(*inks)
+    assert sum(map(len, inks)) == len(everything)
+    length = {name: edge.length for name, edge in enumerate(graph.edges)}
+    assert sum(length[name] for name in everything) > 0.97 * sum(length.values())
+    others = ways.others()
+    assert others
+    assert all(set(way.ink) <= set(length) for way in others)
+    half = frozenset(list(everything)[::2])
+    left = set().union(*(way.ink for way in ways.likeliest(without=half)))
+    assert left.isdisjoint(half)
