@@ -179,10 +179,11 @@ def take_rings(
         within = [np.hypot(*(edge.points - middle).T) < reach for edge in graph.edges]
         crossing = [k for k, points in enumerate(within) if points.any()]
         around = float(np.hypot(*np.diff(ring.points, axis=0).T).sum())
-        if not crossing or (
-            len(crossing) == 1 and np.count_nonzero(within[crossing[0]]) > ALL_ROUND * around
-        ):
-            continue  # a better ring has it all, or it stands by itself
+        if not crossing:
+            continue  # a better ring has it all
+        only = within[crossing[0]]
+        if len(crossing) == 1 and only.mean() > 0.5 and np.count_nonzero(only) > ALL_ROUND * around:
+            continue  # it stands by itself
         ink = _take(graph, middle, reach, inside, pen, names, parts)
         hidden = round(around) - sum(map(len, ink.values()))
         if hidden > 0:  # thinning leaves less of a blot than was drawn
