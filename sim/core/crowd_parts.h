@@ -1,7 +1,10 @@
-/* What the parts of the crowd share: crowd.c steps, crowd_touch.c finds contacts, crowd_contact.c makes them,
- * crowd_rest.c puts bodies to rest, crowd_events.c tells what happened. */
+/* What the parts of the crowd share: crowd.c steps; crowd_range.c says what bodies may sweep in a frame, crowd_touch.c finds
+ * pairs there, crowd_near.c how near they are, crowd_contact.c makes contacts of them; crowd_rest.c puts bodies to rest,
+ * crowd_events.c tells what happened. */
 #ifndef CROWD_PARTS_H
 #define CROWD_PARTS_H
+
+#include <stdlib.h>
 
 #include "broad.h"
 #include "crowd.h"
@@ -12,39 +15,39 @@
 /* Two pieces whose boxes meet but that do not touch yet: they cannot before the gap along the normal is used up. */
 typedef struct Near {
     int32_t piece_a, piece_b;
-    int32_t a, b;       /* bodies */
-    Vec normal;         /* of an axis that separates them */
-    double gap;         /* when the bodies had moved and turned so much in the frame: */
-    Vec moved;          /* b against a */
+    int32_t a, b; /* bodies */
+    Vec normal; /* of an axis that separates them */
+    double gap; /* when the bodies had moved and turned so much in the frame: */
+    Vec moved; /* b against a */
     double turned_a, turned_b;
 } Near;
 
 /* How far a body may move in the frame before what it may meet is looked for anew. */
 typedef struct Range {
     Vec low, high; /* of the way of its centre */
-    double room;   /* beyond that, and for turning */
+    double room; /* beyond that, and for turning */
 } Range;
 
 struct Crowd {
-    Recorder *recorder;  /* or NULL */
+    Recorder *recorder; /* or NULL */
     double tolerance;
-    double time;         /* when the substep ends */
-    double substep;      /* the last one's length: impulses are of that long */
+    double time; /* when the substep ends */
+    double substep; /* the last one's length: impulses are of that long */
     int32_t body_count, shape_count, piece_count;
-    Mover *mover;        /* by body */
-    int32_t *active;     /* the bodies that take part in the frame */
+    Mover *mover; /* by body */
+    int32_t *active; /* the bodies that take part in the frame */
     int32_t active_count;
-    int64_t *heat;       /* by body: the last pass that changed it noticeably */
+    int64_t *heat; /* by body: the last pass that changed it noticeably */
     int64_t passes;
-    Pose *start;         /* by body: when the frame began */
+    Pose *start; /* by body: when the frame began */
     double *start_angle, *body_swing;
-    Vec *lead;           /* by body: how far ahead of the start its contacts are looked for */
-    int64_t *placed;     /* by body: the moment for which its outlines hold */
-    int64_t moment;      /* counts frames and substeps */
+    Vec *lead; /* by body: how far ahead of the start its contacts are looked for */
+    int64_t *placed; /* by body: the moment for which its outlines hold */
+    int64_t moment; /* counts frames and substeps */
     Posed posed;
-    Box *piece_box;      /* by piece, when the frame began, without margins */
-    Box *shape_box;      /* by shape: all that it may sweep in the frame */
-    Range *range;        /* by body: within which those boxes hold */
+    Box *piece_box; /* by piece, when the frame began, without margins */
+    Box *shape_box; /* by shape: all that it may sweep in the frame */
+    Range *range; /* by body: within which those boxes hold */
     Index
         known; /* the pairs of pieces that are contacts or near ones, once a body has left its range; else -1 of them */
     bool *shape_moves;
@@ -71,6 +74,9 @@ struct Crowd {
     bool *touched; /* by body: has a contact, a joint, or something near */
 };
 
+/* An array of so many, and one more, zeroed. */
+static inline void *table(size_t count, size_t size) { return calloc(count + 1, size); }
+
 static inline bool crowd_moves(const World *world, int32_t body) { return world->body[body].mode == MODE_CROWD; }
 
 /* crowd_contact.c */
@@ -78,10 +84,51 @@ double contact_reach(const World *world, int32_t piece_a, int32_t piece_b);
 void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Record *old);
 void contact_add(Crowd *crowd, const World *world, const Near *near, const Manifold *m);
 
+/* crowd_range.c */
+int range_create(Crowd *crowd, const World *world);
+void range_destroy(Crowd *crowd);
+void range_place(Crowd *crowd, const World *world, int32_t body);
+void range_start(Crowd *crowd, const World *world, int32_t body, double dt);
+void range_widen(Crowd *crowd, const World *world, int32_t body, double left);
+bool range_left(const Crowd *crowd, int32_t body, double dt);
+Box range_swept(const Crowd *crowd, Box box, int32_t body);
+
+/* crowd_near.c */
+/* How far a near pair is apart at least, as the bodies have moved since it was looked at. */
+static inline double near_gap(const Crowd *crowd, const Near *n) {
+    const Mover *a = &crowd->mover[n->a], *b = &crowd->mover[n->b];
+    Vec moved = vsub(vsub(b->moved, a->moved), n->moved);
+    return n->gap + vdot(n->normal, moved) - fabs(a->turned - n->turned_a) * crowd->posed.swing[n->piece_a] -
+           fabs(b->turned - n->turned_b) * crowd->posed.swing[n->piece_b];
+}
+
+/* The gap and its normal hold for where the bodies are now. */
+static inline void near_set(const Crowd *crowd, Near *n, Vec normal, double gap) {
+    const Mover *a = &crowd->mover[n->a], *b = &crowd->mover[n->b];
+    n->normal = normal;
+    n->gap = gap;
+    n->moved = vsub(b->moved, a->moved);
+    n->turned_a = a->turned;
+    n->turned_b = b->turned;
+}
+
+/* How much nearer two bodies' pieces can come along the normal in dt, at their present velocities. */
+static inline double near_approach(const Crowd *crowd, const Near *n, double dt) {
+    const Mover *a = &crowd->mover[n->a], *b = &crowd->mover[n->b];
+    double turning = fabs(a->spin) * crowd->posed.swing[n->piece_a] + fabs(b->spin) * crowd->posed.swing[n->piece_b];
+    return dt * (turning - vdot(n->normal, vsub(b->velocity, a->velocity)));
+}
+
+void near_manifold(Crowd *crowd, World *world, int32_t piece_a, int32_t piece_b, int32_t a, int32_t b, double margin,
+                   Manifold *m);
+bool near_look(Crowd *crowd, World *world, Near *near, double soon, double later);
+bool near_look_along(Crowd *crowd, World *world, Near *near, double dt, double later);
+double near_skin(const World *world, const Near *near);
+double near_closing(const Crowd *crowd, const World *world, const Near *near, double dt);
+
 /* crowd_touch.c */
 int touch_create(Crowd *crowd, const World *world);
 void touch_destroy(Crowd *crowd);
-void touch_place(Crowd *crowd, const World *world, int32_t body);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
 void touch_refresh(Crowd *crowd, World *world, double left);
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found, bool *bounces);
