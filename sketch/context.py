@@ -15,6 +15,7 @@ from sketch.scoring import Fitted
 __all__ = ["Context"]
 
 Array = NDArray[np.float64]
+Gaps = dict[tuple[Fitted, Fitted], tuple[float, Array]]  # of open lines: how wide [pixels], and where
 
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
@@ -37,6 +38,7 @@ class Context:
     """What the likely bodies say of the marks on and around them; kept for ink whose surroundings stay."""
 
     def __init__(self) -> None:
+        self._gaps: Gaps = {}
         self._known: dict[Proposed, tuple[list[Fitted], float, list[float]]] = {}
 
     def gains(
@@ -66,7 +68,7 @@ class Context:
         for k, c in enumerate(candidates):
             if c.kind == "arrow" and first:
                 out[k] += -ONE_ARROW if first.isdisjoint(c.pieces) else ONE_ARROW
-        for k in _letters(candidates, out, chosen, LETTER * size):
+        for k in _letters(candidates, out, chosen, LETTER * size, self._gaps):
             out[k] -= TOUCHING
         return out
 
@@ -74,10 +76,10 @@ class Context:
 def _told(proposed: Proposed, bodies: _Bodies, size: float) -> list[float]:
     """The gains of one piece's proposals, given the bodies around them."""
     gains = list(proposed.gains)
-    for k, c in enumerate(proposed.candidates):
+    extents = np.hypot(*(proposed.boxes[:, 2:] - proposed.boxes[:, :2]).T).tolist()
+    for k, (c, extent) in enumerate(zip(proposed.candidates, extents, strict=True)):
         if gains[k] < -NO_BODY:
             continue
-        extent = _extent(c.outline)
         if c.closed and extent < DOT * size:  # where the pen rested
             gains[k] -= 0.5 * (math.log(DOT * size / max(extent, 1e-9)) / DOT_SPREAD) ** 2
         if c.kind == "cross":
@@ -101,32 +103,47 @@ def _first_arrow(candidates: list[Fitted], gains: list[float], chosen: list[int]
     return set(candidates[max(arrows, key=lambda k: gains[k])].pieces) if arrows else set()
 
 
-def _letters(candidates: list[Fitted], gains: list[float], chosen: list[int], largest: float) -> list[int]:
+def _letters(
+    candidates: list[Fitted], gains: list[float], chosen: list[int], largest: float, known: Gaps
+) -> list[int]:
     """Bars no larger than `largest` [pixels] that touch or cross one another, with no small circle there to join them.
 
     A letter, an asterisk, a battery's sign are that; rods that are meant to do something are joined, or large.
+    known: gaps of the last time, replaced by those of this one.
     """
     taken = {i for k in chosen if candidates[k].kind not in ("bar", "cross") for i in candidates[k].pieces}
     pins = [candidates[k].outline.mean(axis=0) for k in chosen if candidates[k].kind == "circle"]
-    bars = [
-        (k, c, _dense(c.outline))
-        for k, c in enumerate(candidates)
-        if c.kind == "bar" and gains[k] > 0 and taken.isdisjoint(c.pieces) and _extent(c.outline) < largest
-    ]
-    bars.sort(key=lambda t: t[2][:, 0].min())
+    bars: list[tuple[float, float, float, float, int, Fitted]] = []
+    for k, c in enumerate(candidates):
+        if c.kind == "bar" and gains[k] > 0 and taken.isdisjoint(c.pieces):
+            (x0, y0), (x1, y1) = c.outline.min(axis=0).tolist(), c.outline.max(axis=0).tolist()
+            if math.hypot(x1 - x0, y1 - y0) < largest:
+                bars.append((x0, y0, x1, y1, k, c))
+    bars.sort(key=lambda t: t[:5])
     found: set[int] = set()
-    for a, (k, c, dense) in enumerate(bars):
-        reach = NEAR_BY * _extent(c.outline)
-        for j, other, points in bars[a + 1 :]:
-            if points[:, 0].min() > dense[:, 0].max() + reach:
+    now: Gaps = {}
+    for a, (x0, y0, x1, y1, k, c) in enumerate(bars):
+        reach = NEAR_BY * math.hypot(x1 - x0, y1 - y0)
+        for left, top, _, bottom, j, other in bars[a + 1 :]:
+            if left > x1 + reach:
                 break
-            gap = np.hypot(*(dense[:, None] - points[None]).transpose(2, 0, 1))
-            if gap.min() > reach or c.pieces == other.pieces:
+            if top > y1 + reach or bottom < y0 - reach or c.pieces == other.pieces:
                 continue
-            at = dense[int(gap.min(axis=1).argmin())]
-            if not any(math.dist(pin, at) < 2 * reach for pin in pins):
+            pair = c, other
+            gap, at = now[pair] = known.get(pair) or _closest(c.outline, other.outline)
+            if gap <= reach and not any(math.dist(pin, at) < 2 * reach for pin in pins):
                 found |= {k, j}
+    known.clear()
+    known.update(now)
     return sorted(found)
+
+
+def _closest(a: Array, b: Array) -> tuple[float, Array]:
+    """How near two open lines come to each other [pixels], and where on the first."""
+    dense, other = _dense(a), _dense(b)
+    gap = np.hypot(dense[:, None, 0] - other[:, 0], dense[:, None, 1] - other[:, 1])
+    nearest = gap.min(axis=1)
+    return float(nearest.min()), dense[int(nearest.argmin())]
 
 
 def _dense(line: Array) -> Array:
@@ -147,6 +164,7 @@ class _Bodies:
         self.boxes = boxes
         self.low, self.high = boxes[:, :2], boxes[:, 2:]
         self.extent = np.hypot(*(self.high - self.low).T)
+        self.rows = np.column_stack([boxes, self.extent]).tolist()
 
     def beside(self, boxes: list[Box]) -> list[list[int]]:
         """Which bodies can matter to marks in each of these boxes."""
@@ -161,17 +179,14 @@ class _Bodies:
             out[i].append(b)
         return out
 
-    def near(self, x: float, y: float, reach: float | Array) -> list[int]:
-        if not self.bodies:
-            return []
-        r = np.asarray(reach)
-        close = (
-            (self.low[:, 0] - r <= x)
-            & (self.low[:, 1] - r <= y)
-            & (self.high[:, 0] + r >= x)
-            & (self.high[:, 1] + r >= y)
-        )
-        return [int(b) for b in np.flatnonzero(close)]
+    def near(self, x: float, y: float, reach: float, share: float = 0.0) -> list[int]:
+        """Those whose box, widened by `reach` [pixels] and by a share of its own extent, has a point."""
+        out = []
+        for b, (x0, y0, x1, y1, extent) in enumerate(self.rows):
+            r = reach + share * extent
+            if x0 - r <= x <= x1 + r and y0 - r <= y <= y1 + r:
+                out.append(b)
+        return out
 
     def around(self, c: Fitted, reach: float, least: float = 0.0) -> int:
         """How many bodies of other ink, at least so large, have c's centre within them or within `reach`."""
@@ -189,7 +204,7 @@ class _Bodies:
         """Whether an end of c touches the outline of a body of other ink that is twice as large."""
         mine = set(c.pieces)
         for x, y in (c.outline[0].tolist(), c.outline[-1].tolist()):
-            for b in self.near(x, y, 0.1 * self.extent):
+            for b in self.near(x, y, 0.0, 0.1):
                 large, other = self.extent[b], self.bodies[b]
                 touches = other.closed and abs(depth(x, y, other.outline)) < 0.1 * large
                 if touches and extent < 0.5 * large and mine.isdisjoint(other.pieces):

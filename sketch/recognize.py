@@ -97,6 +97,7 @@ class Recognizer:
         self._context = Context()
         self._alone: Solved = {}
         self._together: Solved = {}
+        self._errors: dict[Fitted, float] = {}
         self._strokes: dict[int, Stroke] = {}
         self._pieces: dict[int, list[int]] = {}  # of each stroke the things drawn in it: mostly one
         self._count = 0
@@ -146,7 +147,10 @@ class Recognizer:
         candidates, gains, chosen = self._explained(said)
         sketch = self.sketch
         number = {i: s for s, of in enumerate(pieces) for i in of}
-        readings = _readings(self._proposals.page, candidates, gains, chosen, number)
+        fits = [candidates[k] for k in chosen]
+        page = self._proposals.page
+        self._errors = {c: self._errors[c] if c in self._errors else _error(page, c) for c in fits}
+        readings = _readings(candidates, gains, chosen, number, self._errors)
         read = {i for k in chosen for i in candidates[k].pieces}
         for i, stroke in enumerate(sketch.strokes):
             if not read.issuperset(pieces[i]):
@@ -247,12 +251,16 @@ def _same_place(a: Fitted, b: Fitted) -> bool:
 
 
 def _readings(
-    page: Page, candidates: list[Fitted], gains: list[float], chosen: list[int], number: dict[int, int]
+    candidates: list[Fitted],
+    gains: list[float],
+    chosen: list[int],
+    number: dict[int, int],
+    errors: dict[Fitted, float],
 ) -> list[Reading]:
     """The chosen candidates, each with the other readings of the same ink as probabilities, in order of
     drawing.
 
-    number: of each piece the stroke.
+    number: of each piece the stroke.  errors: of each chosen candidate's fit [pixels].
     """
     same: dict[tuple[int, ...], list[int]] = {candidates[k].pieces: [] for k in chosen}
     for k, c in enumerate(candidates):
@@ -280,7 +288,7 @@ def _readings(
                 gains[k],
                 -max(rivals.values()),
                 c.rough,
-                _error(page, c),
+                errors[c],
             )
         )
     return sorted(readings, key=lambda r: r.strokes)
