@@ -192,9 +192,7 @@ def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> lis
     for p in proposed:
         free = [k for k, c in enumerate(p.candidates) if taken.isdisjoint(c.pieces)]
         if len(free) < len(p.candidates):
-            out.append(
-                replace(p, candidates=[p.candidates[k] for k in free], gains=[p.gains[k] for k in free])
-            )
+            out.append(proposing([p.candidates[k] for k in free], [p.gains[k] for k in free]))
         else:
             out.append(p)
     found = [forced_reading(page, strokes, kind) for strokes, kind in forced.items()]
