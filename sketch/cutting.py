@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 WAY = 2  # as in core/cut.c: from one thing to the next
 CUT = 10.0  # nats that going on to another thing, or on the way to it, is rarer than lifting the pen
+LEAST = (20.0, 40.0)  # nats that no loop, and no line, is said in fewer
 OPEN = 0.2  # of its length: a stroke whose ends are further apart is no outline
 
 
@@ -39,26 +40,32 @@ def things_in(points: Array) -> list[Array]:
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     at = np.searchsorted(along, np.array(shares) * along[-1])
     parts = [points[a : b + 1] for a, b, kind in zip(at, at[1:], kinds, strict=False) if kind != WAY]
+    least = [LEAST[kind] for kind in kinds if kind != WAY]
     page = Page()
     page.add([points, *parts])
     page.settle()
     if len(parts) < 2 or len(page.pieces) <= len(parts):
         return [points]
     whole, *things = page.pieces.values()
-    said = sum(_nats(page, p) for p in things) + CUT * (len(kinds) - 1)
     # the whole is to be said as finely as its parts: with their number of observations, and to their precision
     count = sum(p.observations for p in things)
     scale = sum(p.scale * p.observations for p in things) / count
     coarse = whole.observations * max(math.log(whole.scale / scale), 0.0)
-    meant = max(count / whole.observations, 1.0) * _nats(page, whole, free=False) + coarse
-    free = unread(replace(whole, scale=min(scale, whole.scale), observations=count))
-    return parts if said < min(free, meant) else [points]
+    most = unread(replace(whole, scale=min(scale, whole.scale), observations=count))
+    for meant in _meant(page, whole):
+        most = min(most, max(count / whole.observations, 1.0) * meant + coarse)
+    said = CUT * (len(kinds) - 1) + sum(least)
+    for p, bound in zip(things, least, strict=True):
+        if said >= most:
+            return [points]
+        said += min((unread(p), *_meant(page, p))) - bound
+    return parts if said < most else [points]
 
 
-def _nats(page: Page, p: Piece, *, free: bool = True) -> float:
-    """The fewest nats to say a piece by itself, as something that has a meaning or freely."""
+def _meant(page: Page, p: Piece) -> list[float]:
+    """The nats to say a piece by itself as each thing that has a meaning."""
     found = [read_bar(p), read_cross(page, (p.index,))]
     if p.gap < OPEN * p.length:
         found += read_outline(page, [(p.index, False)])
     found += [read_arrow(page, *group) for group in arrow_groups(page, p) if group[0] == (p.index,)]
-    return min((unread(p) if free else math.inf, *(f.cost for f in found if f is not None)))
+    return [f.cost for f in found if f is not None]

@@ -83,18 +83,24 @@ INK_API int32_t ink_cut(const double *xy, int32_t n, double *cuts, int32_t *kind
     for (int k = 0; k <= PARTS; k++)
         for (int j = 0; j < SAMPLES; j++) best[k][j] = INFINITY;
     best[0][0] = 0;
+    double cost[SAMPLES][SAMPLES][3];
+    for (int i = 0; i + 1 < SAMPLES; i++)
+        for (int j = i + 1; j < SAMPLES; j++) {
+            cost[i][j][0] = loop_cost(&w, i, j);
+            cost[i][j][1] = line_cost(&w, i, j);
+            cost[i][j][2] = way_cost(&w, i, j);
+        }
     for (int k = 1; k <= PARTS; k++)
         for (int i = 0; i + 1 < SAMPLES; i++) {
             if (!isfinite(best[k - 1][i])) continue;
-            for (int j = i + 1; j < SAMPLES; j++) {
-                const double cost[3] = {loop_cost(&w, i, j), line_cost(&w, i, j), way_cost(&w, i, j)};
-                for (int t = 0; t < (k > 1 && kind[k - 1][i] == 2 ? 2 : 3); t++) /* no way after a way */
-                    if (best[k - 1][i] + cost[t] < best[k][j]) {
-                        best[k][j] = best[k - 1][i] + cost[t];
+            int kinds_left = k > 1 && kind[k - 1][i] == 2 ? 2 : 3; /* no way after a way */
+            for (int j = i + 1; j < SAMPLES; j++)
+                for (int t = 0; t < kinds_left; t++)
+                    if (best[k - 1][i] + cost[i][j][t] < best[k][j]) {
+                        best[k][j] = best[k - 1][i] + cost[i][j][t];
                         from[k][j] = i;
                         kind[k][j] = t;
                     }
-            }
         }
     int parts = 1, last = SAMPLES - 1, found = 0;
     for (int k = 2; k <= PARTS; k++)

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double ENOUGH = 0.045; /* of the spread of a stroke: a polyline that is nearer says it well */
+
 enum {
     BENDS = 6, /* segments of a polyline that anything with a meaning may have */
     LEGS = 12  /* and of one that ink is said freely with */
@@ -62,7 +64,7 @@ static double least_spread(const double s[3]) {
     return sqrt(fmax(0.5 * (s[0] + s[2]) - sqrt(half * half + s[1] * s[1]), 0));
 }
 
-static void polylines(const double *p, int n, Runs *r, double *residual, double *vertices) {
+static void polylines(const double *p, int n, double spread2, Runs *r, double *residual, double *vertices) {
     double x0 = p[0], y0 = p[1];
     int cut[SIDES + 1];
     Split split;
@@ -74,6 +76,10 @@ static void polylines(const double *p, int n, Runs *r, double *residual, double 
     split_begin(&split, r, 0, 0);
     residual[0] = INFINITY;
     for (int k = 1; k <= LEGS; k++) {
+        if (k > BENDS && residual[k - 1] < ENOUGH * ENOUGH * spread2) { /* what more legs save takes more to say */
+            residual[k] = residual[k - 1];
+            continue;
+        }
         if (k > 1) split_further(&split, k);
         if (k > BENDS) {
             residual[k] = split.best[k][r->n] / r->n;
@@ -158,6 +164,6 @@ INK_API void ink_strokes(const double *xy, const int32_t *ends, int32_t count, d
             samples[2 * (SAMPLES * s + i)] = r.x[i];
             samples[2 * (SAMPLES * s + i) + 1] = r.y[i];
         }
-        polylines(p, n, &r, residual + (LEGS + 1) * s, vertices + 2 * (BENDS + 1) * (BENDS + 1) * s);
+        polylines(p, n, m[6] * m[6], &r, residual + (LEGS + 1) * s, vertices + 2 * (BENDS + 1) * (BENDS + 1) * s);
     }
 }
