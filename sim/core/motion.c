@@ -66,13 +66,15 @@ double motion_way(const Motion *m, double from, double to) {
     return vlength(vmad(v, (to - from) / 2, a)) * (to - from) + vlength(a) * (to - from) * (to - from) / 8;
 }
 
-/* The largest |value| and |slope| of a polynomial for arguments in [0, x]: sums of the coefficients' sizes. */
-static void polynomial_bound(const double *c, int degree, double x, double *value, double *slope) {
-    double power = 1;
+/* The largest |value|, |slope| and |curvature| of a polynomial for arguments in [0, x]: sums of the coefficients' sizes. */
+static void polynomial_bound(const double *c, int degree, double x, double *value, double *slope, double *curvature) {
+    double power = 1, before = 0;
     *value = fabs(c[0]);
-    *slope = 0;
+    *slope = *curvature = 0;
     for (int k = 1; k <= degree; k++) {
+        *curvature += k * (k - 1) * fabs(c[k]) * before;
         *slope += k * fabs(c[k]) * power;
+        before = power;
         power *= x;
         *value += fabs(c[k]) * power;
     }
@@ -81,7 +83,7 @@ static void polynomial_bound(const double *c, int degree, double x, double *valu
 MotionBound motion_bound(const Motion *m, double from, double to) {
     MotionBound bound = {.is_steady = m->degree <= 2};
     if (m->degree == 0) return bound;
-    double value[3], slope[3];
+    double value[3], slope[3], curvature[3];
     if (bound.is_steady) { /* the speed of a parabola is greatest at one of the ends */
         State a = motion_state(m, from), b = motion_state(m, to);
         bound.speed = fmax(vlength(a.v), vlength(b.v));
@@ -90,10 +92,13 @@ MotionBound motion_bound(const Motion *m, double from, double to) {
         bound.acceleration = vlength(bound.steady);
         return bound;
     }
-    for (int k = 0; k < 3; k++) polynomial_bound(m->v[k], m->degree, (to - m->start) / m->span, &value[k], &slope[k]);
+    for (int k = 0; k < 3; k++)
+        polynomial_bound(m->v[k], m->degree, (to - m->start) / m->span, &value[k], &slope[k], &curvature[k]);
     bound.speed = vlength(vec(value[0], value[1]));
     bound.spin = value[2];
     bound.acceleration = vlength(vec(slope[0], slope[1])) / m->span;
     bound.spin_acceleration = slope[2] / m->span;
+    bound.jerk = vlength(vec(curvature[0], curvature[1])) / (m->span * m->span);
+    bound.spin_jerk = curvature[2] / (m->span * m->span);
     return bound;
 }

@@ -29,7 +29,7 @@ typedef struct Motion {
 
 /* What a motion does at most from one time to another. */
 typedef struct MotionBound {
-    double speed, spin, acceleration, spin_acceleration;
+    double speed, spin, acceleration, spin_acceleration, jerk, spin_jerk;
     Vec steady; /* the acceleration, where it is constant; `acceleration` is then its length */
     bool is_steady;
 } MotionBound;

@@ -7,15 +7,23 @@
 
 #define MAX_STEPS 4000
 #define PASSING 1e-5 /* first step for a point that passes by a side, or that a contact holds already [s] */
+#define SLOW 0.1 /* of the time left: a step shorter than that asks for the gap's acceleration too */
 #define PATIENCE 60 /* steps after which a search is not on its way to a root */
 
 /* ---------------------------------------------------------------- bounds */
 
 typedef struct PairBound {
     double steer_ab, steer_ba; /* |second derivative| of a gap with the side on b, on a */
+    double veer_ab, veer_ba; /* and the third */
+    double points, jerk; /* the points' acceleration against each other, and its change */
     double closing; /* speed of the points against each other */
     double passing; /* and as one sees them who turns with a or b */
 } PairBound;
+
+/* The third derivative of a unit vector that turns with a body. */
+static double whirl(const MotionBound *m) {
+    return m->spin_jerk + 3 * m->spin * m->spin_acceleration + m->spin * m->spin * m->spin;
+}
 
 /* Bounds over [from, to] for two movers whose shapes reach ra and rb from their centres, and of which no two points are
  * farther apart than `apart` at the start. */
@@ -31,12 +39,15 @@ static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, doubl
         Vec last = vmad(first, to - from, vsub(a.steady, b.steady));
         centres = sqrt(fmax(vdot(first, first), vdot(last, last)));
     }
-    PairBound bound;
+    PairBound bound = {.points = points};
     bound.closing = centres + ra * a.spin + rb * b.spin;
     apart += bound.closing * (to - from); /* |rho| at most */
     bound.passing = bound.closing + fmax(a.spin, b.spin) * apart;
     bound.steer_ab = points + 2 * b.spin * bound.closing + swing_b * apart;
     bound.steer_ba = points + 2 * a.spin * bound.closing + swing_a * apart;
+    bound.jerk = a.jerk + b.jerk + ra * whirl(&a) + rb * whirl(&b);
+    bound.veer_ab = bound.jerk + 3 * b.spin * points + 3 * swing_b * bound.closing + apart * whirl(&b);
+    bound.veer_ba = bound.jerk + 3 * a.spin * points + 3 * swing_a * bound.closing + apart * whirl(&a);
     return bound;
 }
 
@@ -137,6 +148,19 @@ static double turning_step(const Slack *slack, const Gap *g, double acceleration
     return begins ? fmax(safe_step(seen, g->rate, steer), 1e-9) : 0;
 }
 
+/* The most that a gap's third derivative can be. Of rho . n it follows term by term, with n turning as the side does; of
+ * |rho| with n turning by what the points move across it, as long as they do not come nearer. */
+static double veer_of(const PairBound *bound, const Feature *f, const Gap *g, bool a_first) {
+    if (f->is_side) return a_first ? bound->veer_ab : bound->veer_ba;
+    double turning = bound->closing / fmax(g->gap + f->radius_a + f->radius_b, 1e-300);
+    return bound->jerk + 3 * turning * (bound->points + turning * bound->closing);
+}
+
+/* gap + rate dt + dt^2 / 2 (acceleration - veer dt / 3) is no less than the gap for so long, when the rate is not negative. */
+static double parting_step(double acceleration, double veer) {
+    return acceleration > 0 ? 3 * acceleration / fmax(veer, 1e-300) : 0;
+}
+
 /* The safe step of all features of two shapes. */
 static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, const Placed *pa, const Placed *pb,
                           const PairBound *bound, double passing, double time, double step, bool begins) {
@@ -152,6 +176,8 @@ static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, con
         double steer =
             f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
         double own = feature_step(s->slack, &g, bound, steer);
+        if (g.rate >= 0 && g.gap > -s->slack->deep && own < SLOW * step) /* parts, but slowly at first */
+            own = fmax(own, parting_step(gap_acceleration(s, &f, &g, pa, pb, time), veer_of(bound, &f, &g, a_first)));
         const Placed *point_of = a_first ? pa : pb, *side_of = a_first ? pb : pa;
         if (own <= 0 && g.rate >= -s->slack->speed) /* on its way in, slowly: unless it turns round at once */
             own = turning_step(s->slack, &g, gap_acceleration(s, &f, &g, pa, pb, time), steer, begins);
