@@ -402,7 +402,12 @@ def scene_json(scene: dict[str, Any]) -> str:
     return "{" + ",\n ".join(parts) + "}\n"
 
 
-PICTURES = {"pendulum-on-paper.jpg": ("pendulum", "photo"), "cradle-on-paper.png": ("cradle", "scan")}
+PICTURES = {
+    "pendulum-on-paper.jpg": ("pendulum", "photo"),
+    "billiard-on-paper.jpg": ("billiard", "photo"),
+    "double-pendulum-on-paper.jpg": ("double-pendulum", "photo"),
+    "cradle-on-paper.png": ("cradle", "scan"),
+}
 
 
 def files() -> dict[str, str]:

@@ -128,7 +128,7 @@ def test_the_picture_is_read_as_its_strokes_are(name: str) -> None:
     meant = [meaning(solid.get(b["kind"], b["kind"]), len(b["outline"]), b["anchored"]) for b in page.bodies]
     assert sorted(read) == sorted(meant)
     assert len(scene.joints) == len(page.joints)
-    g = np.array(page.gravity) * [9.81, -9.81]
+    g = np.array(page.gravity or (0, 0)) * [9.81, -9.81]
     assert math.dist(scene.gravity, g) < 9.81 * math.radians(8)
 
 

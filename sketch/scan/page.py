@@ -27,6 +27,9 @@ MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture th
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
+STAIN = 0.006  # of the picture's size, to either side: what is wider is a stain or filled
+EDGE = 3.0  # [pixels] to either side: ink ends within
+SOFT = 0.5  # of a stain's darkness: less than this changes there
 SPECK = 3.5  # pen widths
 PINHOLE = 1.0  # squares of the pen width: a ring around a smaller hole is a blot
 FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
@@ -78,6 +81,7 @@ def read_page(picture: Image) -> Page:
         light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
     # where light changes at an edge its side is known to a small pixel only: taken as on the dark side
     light = cv2.blur(cv2.erode(light, np.ones((3, 3), np.uint8)), (3, 3))
+    light = _less_stains(light, small, reduced)
     light = cv2.resize(light, (width, height), interpolation=cv2.INTER_LINEAR)
     darkness = cv2.divide(cv2.subtract(light, grey), np.maximum(light, np.uint8(DIMMEST)), scale=255.0)
     if paper is not None:
@@ -90,6 +94,33 @@ def read_page(picture: Image) -> Page:
     for strip in (darkness[:rim], darkness[-rim:], darkness[:, :rim], darkness[:, -rim:]):
         strip[...] = 0
     return Page(darkness, _noise(darkness, paper), edge)
+
+
+def _less_stains(light: Image, small: Image, reduced: int) -> Image:
+    """Light without what stains take of it: they are wider than a line, as fills are, but without an edge.
+
+    reduced: pixels of the picture, each way, to a pixel of these.
+    """
+    import cv2
+
+    square = np.ones((3, 3), np.uint8)
+    line = 2 * max(round(STAIN * small.size**0.5), 2) + 1
+    wide = cv2.morphologyEx(cv2.subtract(light, small), cv2.MORPH_OPEN, np.ones((line, line), np.uint8))
+    dark = (wide > LEAST_CONTRAST * (light / 255.0)).astype(np.uint8)
+    if not dark.any():
+        return light
+    count, labels = cv2.connectedComponents(dark)
+    near = np.ones((2 * max(round(EDGE / reduced), 1) + 1,) * 2, np.uint8)
+    steps = cv2.subtract(cv2.dilate(wide, near), cv2.erode(wide, near))
+    rim = (dark > cv2.erode(dark, square)).astype(np.uint8)
+    level = np.zeros(count)
+    np.maximum.at(level, labels[dark > 0].astype(np.intp), wide[dark > 0])
+    at = labels[rim > 0]
+    step = np.bincount(at, steps[rim > 0], count) / np.maximum(np.bincount(at, minlength=count), 1)
+    soft = step < SOFT * level
+    soft[0] = False
+    stain = cv2.blur(wide * cv2.dilate(soft[labels].astype(np.uint8), square), (3, 3))
+    return np.asarray(cv2.subtract(light, stain))
 
 
 def _darkest_channel(picture: Image) -> Image:
@@ -147,7 +178,7 @@ def _paper(colours: Image) -> tuple[Image | None, NDArray[Any]]:
     weight = _brightest_region(inner, bright).astype(np.float32)
     around = _continued(bright, weight)
     lit = bright >= TABLE * around
-    white = whiteness >= TINGE * _continued(whiteness, weight)
+    white = whiteness >= TINGE * np.median(whiteness[weight > 0])
     sheet = _brightest_region(inner & lit & white, bright)
     # what the sheet surrounds lies on it: a filled shape, a coin, a blot
     rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)

@@ -22,6 +22,7 @@ SHORT = 0.03  # of the picture's width: shorter stretches are crossings of other
 FEWEST = 5  # printed lines of which such a stretch is seen
 EVEN = 0.12  # of their distance: how far they are from even spacing
 SEEN = 0.35  # of a line's length that has to be ink, where it is only thought to be
+WHOLE = 0.8  # of the picture's width: a line seen so far is seen whole
 DARKER = 1.5  # than the printed line: ink on it
 
 
@@ -113,9 +114,9 @@ def _family(lines: list[Line], shape: tuple[int, ...]) -> list[Line]:
 def _refined(line: Line, mask: Image, thick: float) -> Line | None:
     """Where exactly a line of the family runs; None where there is no ink along it."""
     height, width = mask.shape
-    reach = round(thick) + 3
     x = np.arange(width)
-    for _ in range(2):
+    for around in (10, 5, 3):
+        reach = round(thick) + around
         middle = np.round(np.polyval(line, x)).astype(int)
         inside = (middle >= reach) & (middle < height - reach)
         if not inside.any():
@@ -127,8 +128,11 @@ def _refined(line: Line, mask: Image, thick: float) -> Line | None:
         if np.count_nonzero(alone) < SEEN * len(count):
             return None
         y = (rows * ink).sum(axis=0)[alone] / count[alone]
-        line = np.polyfit(x[inside][alone], y, 3)
-    return np.asarray(line)
+        seen = x[inside][alone]
+        # a line that is seen in part is not bent: it would go astray beyond
+        bends = 3 if np.ptp(seen) > WHOLE * width else 1
+        line = np.asarray(np.polyadd(line, np.polyfit(seen, y - np.polyval(line, seen), bends)))
+    return line
 
 
 def _erase(line: Line, mask: Image, darkness: Image, thick: float) -> None:

@@ -84,7 +84,7 @@ class Paper:
 
 
 PHOTO = Paper(shade=0.7, tilt=4, turn=2, noise=3)
-PENCIL = replace(PHOTO, color=(95, 92, 90), cover=0.8, grain=0.35, pen=2.4)
+PENCIL = replace(PHOTO, color=(95, 92, 90), cover=0.8, grain=0.28, pen=2.4)
 BALLPOINT = replace(PHOTO, color=(140, 60, 35), pen=1.8, cover=0.88)
 
 PAPERS: dict[str, Paper] = {
@@ -123,7 +123,7 @@ PAPERS: dict[str, Paper] = {
     "out of focus": replace(PHOTO, blur=2.0),
     "noisy": replace(PHOTO, noise=11),
     "JPEG of quality 30": replace(BALLPOINT, quality=30),
-    "large photo": replace(PHOTO, scale=2.6, blur=1.2, table=0.05),
+    "large photo": replace(PHOTO, scale=2.2, blur=1.2, table=0.05),
     "everything at once": replace(
         BALLPOINT,
         ruled=32,
@@ -153,12 +153,13 @@ def photographed(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> tu
     picture = _lit(picture, paper, rng)
     if paper.fingers:
         _hold(picture, paper, view, sheet.shape[1::-1], rng)
-    picture = picture * np.array(paper.lamp, np.float32)
+    picture *= np.array(paper.lamp, np.float32)
     if paper.blur:
         picture = cv2.GaussianBlur(picture, (0, 0), paper.blur)
     if paper.noise:
-        picture = picture + rng.normal(0, paper.noise, picture.shape)
-    pixels = np.clip(np.round(picture), 0, 255).astype(np.uint8)
+        picture += paper.noise * rng.standard_normal(picture.shape, np.float32)
+    picture += 0.5
+    pixels = np.clip(picture, 0, 255, out=picture).astype(np.uint8)
     if paper.quality:
         data = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, paper.quality])[1]
     else:
@@ -307,8 +308,8 @@ def _grain(shape: tuple[int, ...], size: float, rng: np.random.Generator) -> Arr
 
 def _lit(picture: Array, paper: Paper, rng: np.random.Generator) -> Array:
     height, width = picture.shape[:2]
-    y, x = np.mgrid[:height, :width].astype(np.float32)
-    u, v = x / width - 0.5, y / height - 0.5
+    u = np.linspace(-0.5, 0.5, width, dtype=np.float32)[None]
+    v = np.linspace(-0.5, 0.5, height, dtype=np.float32)[:, None]
     a = rng.uniform(0, 2 * math.pi)
     along = (u * math.cos(a) + v * math.sin(a)) / (0.5 * (abs(math.cos(a)) + abs(math.sin(a))))
     light = 1 - (1 - paper.shade) * (0.5 + 0.5 * along)
@@ -333,18 +334,18 @@ def _hold(
     edge = np.array([[[sheet[0], sheet[1] * 0.55]], [[sheet[0], sheet[1] * 0.9]]], np.float64)
     low, high = cv2.perspectiveTransform(edge, view).reshape(2, 2)
     thick = 0.03 * picture.shape[1]
+    left = max(int(min(low[0], high[0]) - 3 * thick), 0)
+    whole, picture = picture, np.ascontiguousarray(picture[:, left:])
+    low, high = low - [left, 0], high - [left, 0]
     for k in range(paper.fingers):
         tip = low + (high - low) * k / max(paper.fingers, 1) - [rng.uniform(0, 0.6) * thick, 0]
-        root = tip + np.array([0.5 * picture.shape[1], rng.uniform(0.05, 0.15) * picture.shape[0]])
+        root = tip + np.array([20 * thick, rng.uniform(1.5, 4) * thick])
         ends = [tuple(np.round(p).astype(int).tolist()) for p in (tip, root)]
         mask = np.zeros(picture.shape[:2], np.float32)
         cv2.line(mask, *ends, 1.0, round(1.6 * thick))
-        shadow = cv2.GaussianBlur(np.roll(mask, 5, axis=0), (0, 0), 0.2 * thick)
-        picture *= 1 - 0.4 * shadow[..., None]
-        skin = (
-            np.array(SKIN, np.float32)
-            * (0.75 + 0.25 * cv2.GaussianBlur(mask, (0, 0), 0.4 * thick))[..., None]
-        )
-        picture[mask > 0] = skin[mask > 0]
+        depth = cv2.GaussianBlur(mask, (0, 0), 0.25 * thick)[..., None]
+        picture *= 1 - 0.4 * np.roll(depth, 5, axis=0)
+        picture[mask > 0] = (np.array(SKIN, np.float32) * (0.7 + 0.3 * depth))[mask > 0]
         nail = tuple(np.round(tip + np.array([0.1 * thick, 0])).astype(int).tolist())
         cv2.ellipse(picture, nail, (round(0.4 * thick), round(0.28 * thick)), 0, 0, 360, NAIL, -1)
+    whole[:, left:] = picture
