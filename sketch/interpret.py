@@ -26,6 +26,7 @@ JOINS = (
     0.3  # radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
 )
 NAILS = 0.12  # likewise of a pivot to the background: a ball in front of one body is common
+WHEEL = 100.0  # times that a circle with a much smaller one at its centre is likelier a wheel than a pin
 NEAR = 2.5  # radii from a pivot's centre to a body that it misses by a slip of the hand
 ROUGH = 20.0  # nats that a polygon leaves to be said about its ink: nineteen in twenty clean ones leave less
 UNSURE = 0.2  # a reading with a rival of this probability is named in the notes
@@ -115,12 +116,12 @@ def _pivots(bodies: Bodies, ppm: float, notes: list[str]) -> list[Joint]:
     for circle in sorted(circles, key=lambda d: -d.size):  # so that a pivot is asked of bodies, not of pivots
         at = circle.outline.mean(axis=0)
         radius = circle.size / math.sqrt(math.pi)
-        if circle.reading.forced is None and _pinned(circle, at, radius, bodies):
-            continue
         forced = circle.reading.forced == "pivot"
         under, odds = _under(circle, at, radius, bodies, forced)
         if not under:
             continue
+        if not forced and _pinned(circle, at, radius, bodies):
+            odds /= odds + (1 - odds) * WHEEL
         rival = ("ball", 1 - odds) if odds >= 0.5 else ("pivot", odds)
         circle.reading.alternatives = sorted([*circle.reading.alternatives, rival], key=lambda t: -t[1])
         if odds < 0.5:
@@ -142,7 +143,7 @@ def _pivots(bodies: Bodies, ppm: float, notes: list[str]) -> list[Joint]:
 
 
 def _pinned(circle: Drawn, at: Array, radius: float, bodies: Bodies) -> bool:
-    """Whether a circle has a pivot of its own: a much smaller circle at its centre. It is a wheel then, no pin."""
+    """Whether a circle has a pivot of its own: a much smaller circle at its centre. Nobody pins a pin."""
     return any(
         d is not circle
         and d.reading.kind == "circle"

@@ -103,6 +103,18 @@ def test_a_page_without_a_canvas_is_as_wide_as_its_ink() -> None:
     assert view.pixels_per_metre == pytest.approx(110, rel=0.03)
 
 
+def test_a_wheel_on_a_pivot_is_no_pivot_and_a_pivot_of_two_rings_is_one() -> None:
+    """Over two bodies that overlap: nobody pins a pin, but some draw a pin as two rings."""
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        under = [outline(box(500, 480, 320, 100), NEAT, rng), outline(box(500, 540, 600, 60), NEAT, rng)]
+        wheel = read(*under, circle((500, 520), 42, NEAT, rng), circle((500, 520), 10, NEAT, rng)).scene
+        assert len(wheel.bodies) == 3
+        assert len(wheel.joints) == 1
+        rings = read(*under, circle((500, 520), 15, NEAT, rng), circle((500, 520), 5, NEAT, rng)).scene
+        assert (len(rings.bodies), len(rings.joints)) == (2, 1)
+
+
 def test_gravity_can_be_given() -> None:
     scene = recognize(pendulum(NEAT, np.random.default_rng(1)), gravity=(1.0, 2.0)).scene
     assert scene.gravity == (1.0, 2.0)
