@@ -115,19 +115,22 @@ def _letters(
     pins = [candidates[k].outline.mean(axis=0) for k in chosen if candidates[k].kind == "circle"]
     bars: list[tuple[float, float, float, float, int, Fitted]] = []
     for k, c in enumerate(candidates):
-        if c.kind == "bar" and gains[k] > 0 and taken.isdisjoint(c.pieces):
+        if c.kind == "bar" and taken.isdisjoint(
+            c.pieces
+        ):  # a stroke too short or bent for a rod is in a letter too
             (x0, y0), (x1, y1) = c.outline.min(axis=0).tolist(), c.outline.max(axis=0).tolist()
             if math.hypot(x1 - x0, y1 - y0) < largest:
                 bars.append((x0, y0, x1, y1, k, c))
     bars.sort(key=lambda t: t[:5])
     found: set[int] = set()
     now: Gaps = {}
+    longest = max((math.hypot(x1 - x0, y1 - y0) for x0, y0, x1, y1, _, _ in bars), default=0.0)
     for a, (x0, y0, x1, y1, k, c) in enumerate(bars):
-        reach = NEAR_BY * math.hypot(x1 - x0, y1 - y0)
-        for left, top, _, bottom, j, other in bars[a + 1 :]:
-            if left > x1 + reach:
+        for left, top, right, bottom, j, other in bars[a + 1 :]:
+            if left > x1 + NEAR_BY * longest:
                 break
-            if top > y1 + reach or bottom < y0 - reach or c.pieces == other.pieces:
+            reach = NEAR_BY * max(math.hypot(x1 - x0, y1 - y0), math.hypot(right - left, bottom - top))
+            if left > x1 + reach or top > y1 + reach or bottom < y0 - reach or c.pieces == other.pieces:
                 continue
             pair = c, other
             gap, at = now[pair] = known.get(pair) or _closest(c.outline, other.outline)
