@@ -64,7 +64,7 @@ class Ways:
         gone = {e for e, edge in enumerate(self._graph.edges) if edge.ink and edge.ink.keys() <= without}
         links = {a: (b, way) for a, (b, way) in self._links.items() if a[0] not in gone and b[0] not in gone}
         courses = follow(self._graph, links, self._inner | gone)
-        for course in courses:
+        for course in courses if not without else ():  # what is left over closes nothing
             self._layout.borrow(course, courses)
         return [self._way(course, links) for course in courses if not self._layout.is_crumb(course)]
 
