@@ -32,7 +32,7 @@ OPEN = 0.25  # the share of the rays beyond the belt that must meet paper: a rin
 CLEAR = 0.8  # and with that within the belt
 BLOT = 0.6  # one that is filled must stand out by so much, and be as round
 ALL_ROUND = 0.7  # of its length: an edge that has so much of the ring is the ring
-LEAST_ROUND = -0.4
+LEAST_ROUND = -0.1
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
 
