@@ -27,6 +27,7 @@ LEAST_SIDE = 8  # [pixels] of a picture that can show anything
 FINEST = 0.5  # picture pixels to a pixel: the thinnest pens are thinned at twice the picture's resolution
 NARROWEST_PEN = 3.0  # [pixels]: a thinner pen is thinned at twice the resolution
 WIDEST_PEN = 6.4  # [pixels]: a wider pen is thinned at half the resolution
+FILLED = 0.025  # of the picture's size: no pen is as wide, so that all shapes are filled
 SMOOTHING = 0.8  # [points]: standard deviation of the smoothing along a stroke
 CERTAIN = -5.0  # [rad²]: a ring with less strain is not looked at as anything else
 NEARBY = 4  # [pixels] within which ink is compared with the darkest
@@ -97,7 +98,8 @@ def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any
     thin_ink, thick_ink = np.percentile(thickness, [20, 80])
     if thick_ink > 2.5 * thin_ink:
         return float(min(thin_ink, WIDEST_PEN))
-    return float(np.count_nonzero(mask)) / len(thickness)
+    pen = float(np.count_nonzero(mask)) / len(thickness)
+    return pen if pen < FILLED * mask.size**0.5 else WIDEST_PEN
 
 
 def _strokes(seen: Traced) -> list[Points]:

@@ -40,6 +40,13 @@ def test_a_drawing_is_read_on_every_paper(name: str) -> None:
     assert differences(seen, recognize(load_sketch(data)).scene) == []
 
 
+def test_a_page_of_filled_shapes_alone_is_read() -> None:
+    """Nothing on it is as thin as a pen."""
+    drawn = draw(104, 7, 20)
+    data, seen = photographed(drawn, PAPERS["filled"], np.random.default_rng([104, 1]))
+    assert differences(seen, recognize(load_sketch(data)).scene) == []
+
+
 @pytest.mark.parametrize("name", ["ruled darkly", "squared darkly", "coffee", "on a table, with fingers"])
 def test_ink_is_all_that_is_seen(name: str) -> None:
     """The mask covers the strokes, and nothing is far from them."""
