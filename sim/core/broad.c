@@ -71,13 +71,38 @@ static int pair_room(Sweep *sweep, int32_t more) {
     return SIM_OK;
 }
 
+static int32_t count_moving(const Sweep *sweep, const bool *moving) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < sweep->count; i++) count += moving[i];
+    return count;
+}
+
+/* Where few boxes move each is held against all: nothing needs to be sorted. */
+static int few_pairs(Sweep *sweep, const Box *box, const bool *moving) {
+    for (int32_t i = 0; i < sweep->count; i++) {
+        if (!moving[i]) continue;
+        if (pair_room(sweep, sweep->count) != SIM_OK) return SIM_OUT_OF_MEMORY;
+        Box own = box[i];
+        Pair *pair = sweep->pair + sweep->pair_count;
+        for (int32_t j = 0; j < sweep->count; j++) {
+            *pair = (Pair){i < j ? i : j, i < j ? j : i};
+            pair += (box[j].low.x <= own.high.x) & (own.low.x <= box[j].high.x) & (box[j].low.y <= own.high.y) &
+                    (own.low.y <= box[j].high.y) & !(moving[j] & (j <= i));
+        }
+        sweep->pair_count = (int32_t)(pair - sweep->pair);
+    }
+    return SIM_OK;
+}
+
 int sweep_pairs(Sweep *sweep, const Box *box, const bool *moving) {
+    enum { FEW = 12 }; /* one in so many */
+    sweep->pair_count = 0;
+    if (FEW * count_moving(sweep, moving) <= sweep->count) return few_pairs(sweep, box, moving);
     bool in_y = spread_in_y(sweep, box, moving);
     sort(sweep, box, moving, in_y);
     const double *lows = sweep->low, *lows_across = sweep->across_low, *highs_across = sweep->across_high;
     const bool *moves = sweep->moving;
     int32_t count = sweep->count;
-    sweep->pair_count = 0;
     for (int32_t k = 0; k < count; k++) {
         double high = sweep->high[k], low_across = lows_across[k], high_across = highs_across[k];
         int32_t end = k + 1, i = sweep->order[k];

@@ -147,7 +147,7 @@ static inline double solve_normal(Contact *c, int32_t k, Meeting *m, double want
 /* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
 static inline void solve_rolling(const Contact *c, Meeting *m, double pressed) {
     double most = c->rolling * pressed;
-    double wanted = (m->spin_a - m->spin_b) / (c->inverse_moment_a + c->inverse_moment_b);
+    double wanted = (m->spin_a - m->spin_b) * c->twist_mass;
     wanted = wanted > most ? most : wanted < -most ? -most : wanted;
     m->spin_a -= c->inverse_moment_a * wanted;
     m->spin_b += c->inverse_moment_b * wanted;

@@ -38,6 +38,7 @@ typedef struct Contact {
     double mass_t, impulse_t;
     double friction;
     double rolling; /* lever of the rolling resistance [m]; 0: none */
+    double twist_mass; /* 1 / the sum of the inverse moments, where there is rolling resistance */
     double elasticity;
     double slack; /* how far the pair may shift before its points are found anew [m] */
     double slop; /* overlap that is left alone, so that resting contacts do not come and go [m] */
