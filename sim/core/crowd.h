@@ -17,4 +17,7 @@ void crowd_destroy(Crowd *crowd);
  * nothing, carries no joint and has nothing near has MODE_FLIGHT. A resting body that is hit is woken: MODE_CROWD. */
 int crowd_step(Crowd *crowd, World *world, double from, double to, double tolerance);
 
+/* Whether a body is so slow that in the crowd rolling resistance acts on it; never without gravity. */
+bool crowd_is_slow(const World *world, int32_t body);
+
 #endif

@@ -73,11 +73,11 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
 }
 
 /* Bodies this slow come to rest by rolling resistance, as real ones do: without it a box rocks on a ball for ever. */
-static bool slow(const World *world, int32_t body) {
+bool crowd_is_slow(const World *world, int32_t body) {
     static const double SLOW = 0.1; /* of the speed of falling by its own reach */
     const Body *b = &world->body[body];
     double limit = SLOW * SLOW * vlength(world->gravity) * b->reach;
-    return vdot(b->velocity, b->velocity) + b->spin * b->spin * b->reach * b->reach <= limit;
+    return vdot(b->velocity, b->velocity) + b->spin * b->spin * b->reach * b->reach < limit;
 }
 
 /* In their contact a body counts as no more than so many times as heavy as the other: sequential impulses take as many
@@ -94,7 +94,7 @@ static void set_masses(Contact *c, const Mover *a, const Mover *b) {
 }
 
 void contact_add(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
-    static const double SLACK = 0.05, SLOP = 0.005, FINE = 2e-3, ROLLING = 6e-3;
+    static const double SLACK = 0.05, SLOP = 0.005, FINE = 2e-3, ROLLING = 1e-2;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
     double reach = contact_reach(world, near->piece_a, near->piece_b);
@@ -107,8 +107,9 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     c->slack = SLACK * reach;
     c->slop = SLOP * reach;
     c->fine = FINE * reach;
-    c->rolling =
-        slow(world, near->a) && slow(world, near->b) ? ROLLING * reach * (c->friction < 1 ? c->friction : 1) : 0;
+    c->rolling = crowd_is_slow(world, near->a) && crowd_is_slow(world, near->b)
+                     ? ROLLING * reach * (c->friction < 1 ? c->friction : 1)
+                     : 0;
     c->twist_mass = c->rolling > 0 ? 1 / (c->inverse_moment_a + c->inverse_moment_b) : 0;
     c->key = pair_key(near->piece_a, near->piece_b);
     c->touching = events_touching(crowd, world, c);

@@ -86,6 +86,14 @@ static bool meets_crowd(const Sim *sim, int32_t body, double from, double to) {
     return false;
 }
 
+/* Whether the crowd is about to rest: all of it is so slow that rolling resistance ends its motion (crowd_contact.c), which
+ * the exact way, where a ball rolls for ever, does not know. */
+static bool crowd_settles(const World *world) {
+    for (int32_t i = 1; i < world->body_count; i++)
+        if (world->body[i].mode == MODE_CROWD && !crowd_is_slow(world, i)) return false;
+    return true;
+}
+
 /* Bodies that come near the crowd within a step belong to it, and so do those that come near these. */
 static int absorb(Sim *sim, double from, double to) {
     World *world = &sim->world;
@@ -153,7 +161,7 @@ static int advance(Sim *sim, const SimOptions *options, double end) {
         if (crowd == 0) {
             status = exact_run(&sim->exact, time, nextafter(end, INFINITY), &time);
             again = time + wait;
-        } else if (crowd <= FEW && time >= again) {
+        } else if (crowd <= FEW && time >= again && !crowd_settles(&sim->world)) {
             status = exact_take_back(&sim->exact, time);
             wait *= 2;
             again = time + wait;
