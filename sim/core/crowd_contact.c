@@ -94,7 +94,7 @@ static void set_masses(Contact *c, const Mover *a, const Mover *b) {
 }
 
 void contact_add(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
-    static const double SLACK = 0.05, SLOP = 0.005, FINE = 2e-3, ROLLING = 1e-2;
+    static const double SLACK = 0.05, SLOP = 0.005, FINE = 3e-3, ROLLING = 1e-2;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
     double reach = contact_reach(world, near->piece_a, near->piece_b);
