@@ -35,7 +35,7 @@ def closing_chains(page: Page, start: int) -> list[Chain]:
     best: dict[tuple[int, ...], tuple[float, float, Chain]] = {}
     steps = 0  # in shading every end has many others near it
 
-    def extend(chain: Chain, gaps: float, ink: float) -> None:
+    def extend(chain: Chain, names: tuple[int, ...], gaps: float, ink: float) -> None:
         nonlocal steps
         steps += 1
         if steps > MOST_STEPS:
@@ -44,18 +44,18 @@ def closing_chains(page: Page, start: int) -> list[Chain]:
         out = 0 if reverse else 1
         closing = math.dist(pieces[last].ends[out], pieces[start].ends[0])
         if gaps + closing <= LOOSE * ink:
-            key = tuple(sorted(i for i, _ in chain))
+            key = tuple(sorted(names))
             if key not in best or gaps + closing < best[key][0]:
-                best[key] = (gaps + closing, ink, list(chain))
+                best[key] = (gaps + closing, ink, chain)
         if len(chain) == MOST_PARTS:
             return
         for d, j, e in page.near((last, out)):
-            if j > start and all(j != i for i, _ in chain) and page.apart(j, (i for i, _ in chain)):
+            if j > start and j not in names and page.apart(j, names):
                 longer = ink + pieces[j].length
                 if gaps + d <= LOOSE * 2 * longer:
-                    extend([*chain, (j, e == 1)], gaps + d, longer)
+                    extend([*chain, (j, e == 1)], (*names, j), gaps + d, longer)
 
-    extend([(start, False)], 0.0, pieces[start].length)
+    extend([(start, False)], (start,), 0.0, pieces[start].length)
     tightest = sorted(best.values(), key=lambda t: t[0] / t[1])
     close = sum(gaps <= WIDE * ink for gaps, ink, _ in tightest)
     wide = MOST_CHAINS if page.rivals else MOST_OPEN
