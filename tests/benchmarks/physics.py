@@ -30,6 +30,7 @@ __all__ = ["main"]
 TOLERANCES = tuple(10.0**-k for k in range(2, 9))
 RATES = tuple(60.0 * 2**k for k in range(8))  # 60 to 7680 Hz
 LEAST = 1e-16  # an error of 0 in a logarithmic plot
+_LABELS = ("sketchsim, asked for 1e-2 to 1e-8 m", "pymunk at 60 to 7680 Hz")
 
 
 @dataclass(frozen=True)
@@ -113,28 +114,38 @@ def plot(results: dict[str, tuple[list[Point], list[Point]]], path: str) -> None
     import matplotlib.pyplot as plt
 
     shown = {name: r for name, r in results.items() if not math.isnan(r[0][0].error)}
-    columns = min(5, len(shown))
+    columns = min(range(5, 9), key=lambda c: (-len(shown)) % c) if len(shown) > 8 else len(shown)
     rows = math.ceil(len(shown) / columns)
     figure, axes = plt.subplots(
-        rows, columns, figsize=(2.6 * columns, 2.3 * rows), sharex=True, sharey=True, squeeze=False
+        rows,
+        columns,
+        figsize=(1.75 * columns + 0.5, 1.65 * rows + 0.4),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
     )
-    for ax, (name, lines) in zip(axes.flat, shown.items(), strict=False):
-        for points, color, label in zip(lines, ("#aa3377", "#4477aa"), ("sketchsim", "pymunk"), strict=True):
+    panels = list(axes.flat)
+    for ax, (name, lines) in zip(panels, shown.items(), strict=False):
+        for points, color, label in zip(lines, ("#aa3377", "#4477aa"), _LABELS, strict=True):
             x, y = [1e3 * p.cpu for p in points], [min(max(p.error, LEAST), 1e2) for p in points]
-            ax.loglog(x, y, "o-", color=color, label=label, markersize=3, linewidth=1.2)
-        ax.set_title(name, fontsize=9)
+            ax.loglog(x, y, "o-", color=color, label=label, markersize=2.5, linewidth=1.1)
+        ax.set_title(name, fontsize=8.5)
         ax.set_ylim(1e-17, 1e2)
+        ax.set_yticks([1e-15, 1e-10, 1e-5, 1])
         ax.grid(alpha=0.3, linewidth=0.5)
         ax.tick_params(labelsize=7)
-    for ax in list(axes.flat)[len(shown) :]:
+    for ax in panels[len(shown) :]:
         ax.axis("off")
     for ax in axes[:, 0]:
         ax.set_ylabel("error [m]", fontsize=8)
-    for ax in axes[-1]:
+    for ax in panels[max(len(shown) - columns, 0) : len(shown)]:  # the lowest of each column
         ax.set_xlabel("CPU [ms]", fontsize=8)
-    axes[0, 0].legend(fontsize=7, loc="center right")
-    figure.tight_layout()
-    figure.savefig(path, dpi=110)
+        ax.tick_params(labelbottom=True)
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), fontsize=9, loc="lower center", ncol=2, frameon=False
+    )
+    figure.tight_layout(rect=(0, 0.2 / rows, 1, 1))
+    figure.savefig(path, dpi=100)
 
 
 def main(argv: list[str]) -> int:

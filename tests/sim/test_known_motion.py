@@ -69,6 +69,32 @@ def test_a_flight_beside_a_resting_tower_costs_nothing_more() -> None:
     assert profile["rests"] == 1
 
 
+def test_a_pile_that_rests_costs_nothing_more_and_a_flight_beside_it_one_search() -> None:
+    floor = Body(id="floor", shape=Rectangle((8.0, 1.0)), position=(0.0, -0.5), anchored=True)
+    wall = [
+        Body(id=f"w{k}", shape=Rectangle((1.0, 6.0)), position=(x, 2.0), anchored=True)
+        for k, x in enumerate((-2, 2))
+    ]
+    pile = [
+        Body(
+            id=f"b{k}",
+            shape=Circle(0.2),
+            position=(-0.9 + 0.45 * (k % 5) + 0.05 * (k // 5 % 3), 0.3 + 0.5 * (k // 5)),
+        )
+        for k in range(25)
+    ]
+    scene = Scene(bodies=[floor, *wall, *pile], gravity=(0, -9.81))
+    short, long = (simulate(scene, duration=d).profile for d in (8.0, 60.0))
+    assert short["crowd_steps"] > 0
+    for count in ("crowd_steps", "crowd_contacts", "smooth_steps", "events", "pairs"):
+        assert long[count] == short[count], count
+    ball = Body(id="ball", shape=Circle(0.1), position=(3.0, 200.0))
+    both = simulate(Scene(bodies=[*scene.bodies, ball], gravity=scene.gravity), duration=8.0).profile
+    assert both["crowd_steps"] == short["crowd_steps"]
+    assert both["crowd_contacts"] == short["crowd_contacts"]
+    assert both["events"] <= short["events"] + 5
+
+
 # ---------------------------------------------------------------- events
 
 
