@@ -5,11 +5,14 @@ picture and the drawing as it lies in the picture's own pixels::
 
     data, seen = photographed(drawing, PAPERS["hard shadow"], np.random.default_rng(1))
     differences(seen, recognize(load_sketch(data)).scene)
+
+`python -m tests.sketch.scan.paper SHEET.png` draws a cart on all of them.
 """
 
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.benchmarks.drawings import Drawing
+from tests.benchmarks.mechanisms import draw
 
 __all__ = ["PAPERS", "Paper", "photographed"]
 
@@ -349,3 +353,21 @@ def _hold(
         nail = tuple(np.round(tip + np.array([0.1 * thick, 0])).astype(int).tolist())
         cv2.ellipse(picture, nail, (round(0.4 * thick), round(0.28 * thick)), 0, 0, 360, NAIL, -1)
     whole[:, left:] = picture
+
+
+def contact_sheet(drawing: Drawing, across: int = 6, width: int = 360, height: int = 220) -> Array:
+    """A drawing on every paper, with the papers' names."""
+    pictures = []
+    for name, paper in PAPERS.items():
+        data, _ = photographed(drawing, paper, np.random.default_rng(1))
+        picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+        picture = cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA)
+        cv2.putText(picture, name, (5, 14), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (0, 0, 255), 1, cv2.LINE_AA)
+        pictures.append(picture)
+    pictures += [np.full_like(pictures[0], 255)] * (-len(pictures) % across)
+    rows = [np.hstack(pictures[k : k + across]) for k in range(0, len(pictures), across)]
+    return np.asarray(np.vstack(rows))
+
+
+if __name__ == "__main__":
+    cv2.imwrite(sys.argv[1], contact_sheet(draw(1, 7, 20)))
