@@ -83,7 +83,8 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float) -> list[float]:
         if c.closed and extent < DOT * size:  # where the pen rested
             gains[k] -= 0.5 * (math.log(DOT * size / max(extent, 1e-9)) / DOT_SPREAD) ** 2
         if c.kind == "cross":
-            gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY
+            large = extent > LETTER * size  # nobody writes an X so large: two rods
+            gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY * (1 + large)
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
         elif c.kind == "bar":

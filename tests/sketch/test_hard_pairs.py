@@ -112,6 +112,7 @@ def test_an_x_anchors_and_crossing_bars_do_not(hand, rng) -> None:
     scene = read(ground, cross((300, 500), 44, hand, rng)).scene
     assert [b.anchored for b in scene.bodies] == [True]
     rods = read(line([(100, 100), (420, 300)], hand, rng), line([(120, 310), (400, 90)], hand, rng))
+    assert kinds(rods) == ["bar", "bar"]
     assert not any(b.anchored for b in rods.scene.bodies)
 
 
