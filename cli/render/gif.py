@@ -113,11 +113,12 @@ def nearest_of(palette: Bytes) -> Bytes:
     """For each coarse colour the palette's nearest, shape (65536,); palette: as from choose_palette."""
     code = np.arange(1 << 16)
     colors = np.stack([(code >> 11) * 8 + 4, (code >> 5 & 63) * 4 + 2, (code & 31) * 8 + 4], axis=1)
-    # |a - b|² less |a|², which is the same for the whole row
-    distance = np.sum(palette.astype(np.float32) ** 2, axis=1) - 2 * colors.astype(
-        np.float32
-    ) @ palette.T.astype(np.float32)
-    nearest = np.asarray(np.argmin(distance, axis=1), np.uint8)
+    shades = palette.astype(np.float32)
+    nearest = np.empty(len(colors), np.uint8)
+    for some in np.array_split(code, 32):  # not all at once: that would be 64 MB
+        # |a - b|² less |a|², which is the same for the whole row
+        distance = np.sum(shades**2, axis=1) - 2 * colors[some].astype(np.float32) @ shades.T
+        nearest[some] = np.argmin(distance, axis=1)
     # The large areas keep their very colours, whatever is nearer to the middle of their coarse ones.
     large = np.arange(EXACT - 1, -1, -1)  # the commonest last
     nearest[_coarse(palette[large])] = large
