@@ -13,7 +13,8 @@ __all__ = ["Reading", "scored"]
 
 # How fast a reading that is ahead of its rivals becomes certain. Nats count for less than a coder's would: what is
 # not in the model (another grouping, a careless hand) errs at any margin. Fitted by maximum likelihood on 2000 shapes
-# and 6000 bodies of sketches; `sketchsim bench recognition` prints how it holds for other writers.
+# and 6000 bodies of sketches; `sketchsim bench recognition` prints how it holds, for single shapes on writers that
+# the fit left out.
 STEEP = 1.3
 
 
