@@ -29,6 +29,7 @@ SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no 
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.25  # of a bar's extent: as near as the strokes of a letter are
 LETTER = 0.15  # of the page: larger bars are no letter
+DENSE = 64  # points of an open line that are compared with others, or so
 TWIG = 0.04  # of the page: an open line that is shorter is a slip too
 DOT = 0.012  # of the page: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
@@ -114,29 +115,31 @@ def _letters(
     """
     taken = {i for k in chosen if candidates[k].kind not in ("bar", "cross") for i in candidates[k].pieces}
     pins = [candidates[k].outline.mean(axis=0) for k in chosen if candidates[k].kind == "circle"]
-    bars: list[tuple[float, float, float, float, int, Fitted]] = []
+    readings: dict[tuple[int, ...], list[int]] = {}  # a stroke too short or bent for a rod is in a letter too
     for k, c in enumerate(candidates):
-        if c.kind == "bar" and taken.isdisjoint(
-            c.pieces
-        ):  # a stroke too short or bent for a rod is in a letter too
-            (x0, y0), (x1, y1) = c.outline.min(axis=0).tolist(), c.outline.max(axis=0).tolist()
-            if math.hypot(x1 - x0, y1 - y0) < largest:
-                bars.append((x0, y0, x1, y1, k, c))
-    bars.sort(key=lambda t: t[:5])
+        if c.kind == "bar" and taken.isdisjoint(c.pieces):
+            readings.setdefault(c.pieces, []).append(k)
+    bars: list[tuple[float, float, float, float, Fitted]] = []
+    for k, *_ in readings.values():
+        c = candidates[k]
+        (x0, y0), (x1, y1) = c.outline.min(axis=0).tolist(), c.outline.max(axis=0).tolist()
+        if math.hypot(x1 - x0, y1 - y0) < largest:
+            bars.append((x0, y0, x1, y1, c))
+    bars.sort(key=lambda t: t[:4])
     found: set[int] = set()
     now: Gaps = {}
-    longest = max((math.hypot(x1 - x0, y1 - y0) for x0, y0, x1, y1, _, _ in bars), default=0.0)
-    for a, (x0, y0, x1, y1, k, c) in enumerate(bars):
-        for left, top, right, bottom, j, other in bars[a + 1 :]:
+    longest = max((math.hypot(x1 - x0, y1 - y0) for x0, y0, x1, y1, _ in bars), default=0.0)
+    for a, (x0, y0, x1, y1, c) in enumerate(bars):
+        for left, top, right, bottom, other in bars[a + 1 :]:
             if left > x1 + NEAR_BY * longest:
                 break
             reach = NEAR_BY * max(math.hypot(x1 - x0, y1 - y0), math.hypot(right - left, bottom - top))
-            if left > x1 + reach or top > y1 + reach or bottom < y0 - reach or c.pieces == other.pieces:
+            if left > x1 + reach or top > y1 + reach or bottom < y0 - reach:
                 continue
             pair = c, other
             gap, at = now[pair] = known.get(pair) or _closest(c.outline, other.outline)
             if gap <= reach and not any(math.dist(pin, at) < 2 * reach for pin in pins):
-                found |= {k, j}
+                found.update(readings[c.pieces], readings[other.pieces])
     known.clear()
     known.update(now)
     return sorted(found)
@@ -151,7 +154,7 @@ def _closest(a: Array, b: Array) -> tuple[float, Array]:
 
 
 def _dense(line: Array) -> Array:
-    t = np.linspace(0, 1, 16)[:, None, None]
+    t = np.linspace(0, 1, max(2, min(16, DENSE // (len(line) - 1))))[:, None, None]
     return np.asarray((line[:-1] + t * (line[1:] - line[:-1])).reshape(-1, 2))
 
 
