@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ctypes
-import sys
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from sketch.library import library
 
 __all__ = [
     "SIDES",
@@ -28,8 +28,7 @@ __all__ = [
 Array = NDArray[np.float64]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
-_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-_lib = ctypes.CDLL(str(Path(__file__).with_name("_ink" + _SUFFIX)))
+_lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 7)(
     ("ink_closed", _lib)

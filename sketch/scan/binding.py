@@ -4,33 +4,32 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import sys
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.library import library
+
 __all__ = ["Chains", "pieces", "thin", "trace"]
 
-_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _MASK = np.ctypeslib.ndpointer(np.uint8, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
 _INTS = np.ctypeslib.ndpointer(np.int32, ndim=1, flags=("C_CONTIGUOUS", "WRITEABLE"))
 
 
 @functools.cache
 def _library() -> ctypes.CDLL:
-    library = ctypes.CDLL(str(Path(__file__).parent.parent / ("_ink" + _SUFFIX)))
+    core = library()
     int32 = ctypes.c_int32
-    library.ink_thin.argtypes = [_MASK, int32, int32]
-    library.ink_thin.restype = int32
-    library.ink_trace.argtypes = [_MASK, int32, int32, int32, *[_INTS] * 6]
-    library.ink_trace.restype = int32
-    library.ink_pieces.argtypes = [_MASK, int32, int32, _INTS, _INTS]
-    library.ink_pieces.restype = int32
-    return library
+    core.ink_thin.argtypes = [_MASK, int32, int32]
+    core.ink_thin.restype = int32
+    core.ink_trace.argtypes = [_MASK, int32, int32, int32, *[_INTS] * 6]
+    core.ink_trace.restype = int32
+    core.ink_pieces.argtypes = [_MASK, int32, int32, _INTS, _INTS]
+    core.ink_pieces.restype = int32
+    return core
 
 
 def thin(mask: NDArray[Any]) -> tuple[NDArray[np.uint8], int]:

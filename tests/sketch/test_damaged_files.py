@@ -60,7 +60,7 @@ def test_damage_is_refused_or_harmless(name: str) -> None:
         for where, length, token in changes:
             at = where % (len(data) + 1)
             data = data[:at] + token + data[at + length :]
-        began = time.perf_counter()
+        began = time.process_time()
         said = "read"
         try:
             load_sketch(data)
@@ -68,6 +68,6 @@ def test_damage_is_refused_or_harmless(name: str) -> None:
             said = e.problem
         assert said
         assert "\n" not in said
-        assert time.perf_counter() - began < 2
+        assert time.process_time() - began < 2
 
     check()

@@ -164,10 +164,10 @@ def test_bad_files_name_the_place(data: bytes, path: str, problem: str) -> None:
 def test_an_entity_bomb_takes_no_time() -> None:
     levels = "".join(f'<!ENTITY e{k + 1} "{f"&e{k};" * 10}">' for k in range(12))
     bomb = f'<!DOCTYPE svg [<!ENTITY e0 "lol">{levels}]><svg>&e12;</svg>'.encode()
-    began = time.perf_counter()
+    began = time.process_time()
     with pytest.raises(InputError, match="entity"):
         load_sketch(bomb)
-    assert time.perf_counter() - began < 0.5
+    assert time.process_time() - began < 1
 
 
 def test_without_the_extra_the_error_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,6 +193,6 @@ def test_without_the_extra_the_error_names_it(monkeypatch: pytest.MonkeyPatch) -
     ],
 )
 def test_told_by_content(data: bytes, kind: str) -> None:
-    began = time.perf_counter()
+    began = time.process_time()
     assert kind_of(data) == kind
-    assert time.perf_counter() - began < 0.1
+    assert time.process_time() - began < 1

@@ -1,0 +1,23 @@
+"""The compiled library of ``sketch/core``, loaded once."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import sys
+from pathlib import Path
+
+__all__ = ["library"]
+
+ABI = 1  # as in core/abi.c
+_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+
+
+@functools.cache
+def library() -> ctypes.CDLL:
+    """The library; raises ImportError where it was built from other sources than this package."""
+    path = Path(__file__).with_name("_ink" + _SUFFIX)
+    found = ctypes.CDLL(str(path))
+    if not hasattr(found, "ink_abi") or found.ink_abi() != ABI:
+        raise ImportError(f"{path.name} does not belong to this version; install the project again")
+    return found
