@@ -18,6 +18,7 @@ NEEDED = {
     "av": "av",
     "scipy": "scipy",
     "pymunk": "pymunk",
+    "shtab": "shtab",
 }
 EXTRAS = {
     "pillow_heif": ("pillow-heif", "HEIC pictures: pip install 'sketchsim[scan]'"),
