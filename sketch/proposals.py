@@ -157,7 +157,7 @@ class Proposals:
             return Alone([], False, False)
         outlines = read_outline(self.page, [(p.index, False)])
         best = min(outlines, key=lambda f: f.cost)
-        loop = p.gap < 0.12 * p.length and p.scale > 0.2 * p.extent
+        loop = best.gap < 0.04 and best.narrow > 0.2 * p.extent
         complete = best.gap < 0.1 and (loop or best.cost < 0.6 * unread(p))
         return Alone(outlines, complete, complete and best.cost < PLAIN * unread(p))
 
