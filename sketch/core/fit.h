@@ -33,18 +33,18 @@ typedef struct {
     double spread2;      /* squared distances from the straight line */
 } Line;
 
-/* Fill the sums, and the costs for each of `ways` stiffnesses, (tremor / usual bow)²: what a bow costs. */
-void runs_prepare(Runs *r, int ways, const double *stiffness);
+/* Fill the sums, and the costs for each of `ways` stiffnesses, (tremor / usual bow)²: what a bow costs.
+ * closed: whether runs pass the end; else the costs of those that do are left undefined. */
+void runs_prepare(Runs *r, int closed, int ways, const double *stiffness);
 
 /* The line of samples first .. first+count-1. Nobody draws a straight side straight: it may bow, at a price. */
 Line runs_line(const Runs *r, int first, int count, double stiffness);
 
 /* The best splits of the samples, begun at one of them, into 1, 2, 3 .. runs: each from the one before. */
 typedef struct {
-    int n;
-    double run[SAMPLES + 1][SAMPLES + 1];  /* run[j][i]: cost of samples i .. j-1, counted from the beginning */
-    double best[SIDES + 1][SAMPLES + 1];   /* best[k][j]: cost of the best k runs of samples 0 .. j-1 */
-    int16_t from[SIDES + 1][SAMPLES + 1];  /* where the last of them begins */
+    const Runs *runs;
+    int way, start, n;
+    double best[SIDES + 1][SAMPLES + 1]; /* best[k][j]: cost of the best k runs of the first j samples */
 } Split;
 
 void split_begin(Split *s, const Runs *r, int way, int start);

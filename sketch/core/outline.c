@@ -317,7 +317,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
 
     for (int k = 0; k <= SIDES; k++) cost[k] = residual[k] = INFINITY;
     double stretch[2] = {1, 1};
-    runs_prepare(&r, 2, STIFFNESS);
+    runs_prepare(&r, 1, 2, STIFFNESS);
     for (int way = 0; way < 2; way++)
         best_polygons(&r, factor, way, STIFFNESS[way], stretch, cap2, length[0], observations, side, hopeless, residual,
                       cost, vertices);
@@ -331,7 +331,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
             r.x[i] *= stretch[0];
             r.y[i] *= stretch[1];
         }
-        runs_prepare(&r, 1, STIFFNESS);
+        runs_prepare(&r, 1, 1, STIFFNESS);
         best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, side, hopeless, residual,
                       cost, vertices);
     }

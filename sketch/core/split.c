@@ -45,7 +45,7 @@ static double bow_squares(int m) {
     return fourth - m * mean * mean;
 }
 
-void runs_prepare(Runs *r, int ways, const double *stiffness) {
+void runs_prepare(Runs *r, int closed, int ways, const double *stiffness) {
     int n = r->n;
     memcpy(r->x + n, r->x, n * sizeof *r->x);
     memcpy(r->y + n, r->y, n * sizeof *r->y);
@@ -63,32 +63,43 @@ void runs_prepare(Runs *r, int ways, const double *stiffness) {
         r->siix[i + 1] = r->siix[i] + (double)i * i * x;
         r->siiy[i + 1] = r->siiy[i] + (double)i * i * y;
     }
-    double mean2[SAMPLES + 1], squares[SAMPLES + 1], inverse[SAMPLES + 1];
-    for (int m = 1; m <= n; m++) {
+    double mean2[SAMPLES + 1], squares[SAMPLES + 1], inverse[SAMPLES + 1], per_step[SAMPLES + 1];
+    for (int m = 2; m <= n; m++) {
         inverse[m] = 1.0 / m;
-        mean2[m] = m > 1 ? (m + 1) / (3.0 * (m - 1)) : 0;
+        mean2[m] = (m + 1) / (3.0 * (m - 1));
+        per_step[m] = 2.0 / (m - 1);
         squares[m] = m > 3 ? bow_squares(m) : INFINITY; /* fewer samples do not show a bow */
     }
     for (int i = 0; i < n; i++) {
-        for (int w = 0; w < ways; w++) r->cost[w][i][0] = r->cost[w][i][1] = 0;
-        for (int m = 2; m <= n; m++) {
+        /* Rows of what the runs from i on have in common, so that a compiler takes several runs at a time. */
+        double least[SAMPLES + 1], bowed[SAMPLES + 1], per_length[SAMPLES + 1];
+        int most_samples = closed ? n : n - i;
+        for (int m = 2; m <= most_samples; m++) {
             int e = i + m;
             double ax = r->sx[e] - r->sx[i], ay = r->sy[e] - r->sy[i];
             double xx = r->sxx[e] - r->sxx[i] - ax * ax * inverse[m];
             double xy = r->sxy[e] - r->sxy[i] - ax * ay * inverse[m];
             double yy = r->syy[e] - r->syy[i] - ay * ay * inverse[m];
             double half = 0.5 * (xx - yy), mid = 0.5 * (xx + yy), spread = sqrt(half * half + xy * xy);
-            double least = fmax(mid - spread, 0), most = mid + spread, c = 0.5 * (i + e - 1), k = 2.0 / (m - 1);
+            double most = mid + spread, c = 0.5 * (i + e - 1), k = per_step[m];
             double qx =
                 (r->siix[e] - r->siix[i] - 2 * c * (r->six[e] - r->six[i]) + c * c * ax) * k * k - mean2[m] * ax;
             double qy =
                 (r->siiy[e] - r->siiy[i] - 2 * c * (r->siy[e] - r->siy[i]) + c * c * ay) * k * k - mean2[m] * ay;
             /* the bow's sum along the normal, squared: the normal's projector is (most - S) / (most - least) */
             double along = most * (qx * qx + qy * qy) - (xx * qx * qx + 2 * xy * qx * qy + yy * qy * qy);
-            double bowed = spread > 0 ? along / (2 * spread) : 0;
-            double per_length = m / fmax(12 * most, 1e-12);
-            for (int w = 0; w < ways; w++)
-                r->cost[w][i][m] = fmax(least - bowed / (squares[m] + stiffness[w] * per_length), 0);
+            double under = spread > 0 ? 2 * spread : INFINITY, length2 = 12 * most > 1e-12 ? 12 * most : 1e-12;
+            bowed[m] = along / under;
+            least[m] = mid - spread > 0 ? mid - spread : 0;
+            per_length[m] = m / length2;
+        }
+        for (int w = 0; w < ways; w++) {
+            double *cost = r->cost[w][i], stiff = stiffness[w];
+            cost[0] = cost[1] = 0;
+            for (int m = 2; m <= most_samples; m++) {
+                double left = least[m] - bowed[m] / (squares[m] + stiff * per_length[m]);
+                cost[m] = left > 0 ? left : 0;
+            }
         }
     }
 }
@@ -136,41 +147,42 @@ Line runs_line(const Runs *r, int first, int count, double stiffness) {
     return line;
 }
 
+/* What samples i, i + 1, .. of a split, counted from its beginning, cost as one run: by their number. */
+static const double *run_cost(const Split *s, int i) {
+    int at = s->start + i;
+    return s->runs->cost[s->way][at < s->n ? at : at - s->n];
+}
+
 void split_begin(Split *s, const Runs *r, int way, int start) {
-    int n = s->n = r->n;
-    for (int i = 0; i < n; i++) {
-        const double *row = r->cost[way][start + i < n ? start + i : start + i - n];
-        for (int j = i; j <= n; j++) s->run[j][i] = row[j - i];
-    }
-    for (int j = 0; j <= n; j++) {
-        s->best[1][j] = j ? s->run[j][0] : 0;
-        s->from[1][j] = 0;
-    }
+    s->runs = r;
+    s->way = way;
+    s->start = start;
+    s->n = r->n;
+    memcpy(s->best[1], run_cost(s, 0), sizeof s->best[1]);
 }
 
 void split_further(Split *s, int k) {
-    const double *before = s->best[k - 1];
-    for (int j = 0; j <= s->n; j++) {
-        double low = INFINITY;
-        int at = 0;
-        for (int i = 2 * (k - 1); i <= j - 2; i++) { /* a run has two samples or more */
-            double c = before[i] + s->run[j][i];
-            if (c < low) {
-                low = c;
-                at = i;
-            }
+    double *low = s->best[k];
+    for (int j = 0; j <= s->n; j++) low[j] = INFINITY;
+    for (int i = 2 * (k - 1); i <= s->n - 2; i++) { /* a run has two samples or more */
+        const double before = s->best[k - 1][i], *run = run_cost(s, i);
+        double *to = low + i;
+        for (int m = 2; m <= s->n - i; m++) {
+            double c = before + run[m];
+            to[m] = c < to[m] ? c : to[m];
         }
-        s->best[k][j] = low;
-        s->from[k][j] = (int16_t)at;
     }
 }
 
+/* Where the runs begin is not noted on the way: of the few that are asked for it is found again from what they cost. */
 void split_bounds(const Split *s, int k, int cut[SIDES + 1]) {
     cut[k] = s->n;
-    for (int q = k, j = s->n; q > 0; q--) {
-        j = s->from[q][j];
-        cut[q - 1] = j;
+    for (int q = k; q > 1; q--) {
+        int j = cut[q], i = 2 * (q - 1);
+        while (i < j - 2 && s->best[q - 1][i] + run_cost(s, i)[j - i] > s->best[q][j]) i++;
+        cut[q - 1] = i;
     }
+    cut[0] = 0;
 }
 
 void corner(const Line *a, const Line *b, const double end[2], const double begin[2], double out[2]) {

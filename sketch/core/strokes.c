@@ -72,7 +72,7 @@ static void polylines(const double *p, int n, double spread2, Runs *r, double *r
         r->x[i] -= x0;
         r->y[i] -= y0;
     }
-    runs_prepare(r, 1, (double[]){1e9}); /* straight */
+    runs_prepare(r, 0, 1, (double[]){1e9}); /* straight */
     split_begin(&split, r, 0, 0);
     residual[0] = INFINITY;
     for (int k = 1; k <= LEGS; k++) {
