@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sketch.grouping import arrow_groups
 from sketch.kernel import cuts
-from sketch.marks import read_arrow, read_bar, read_cross
+from sketch.marks import read_arrows, read_bar, read_cross
 from sketch.outlines import read_outline
 from sketch.pieces import Page, Piece
 from sketch.scoring import unread
@@ -67,5 +67,5 @@ def _meant(page: Page, p: Piece) -> list[float]:
     found = [read_bar(p), read_cross(page, (p.index,))]
     if p.gap < OPEN * p.length:
         found += read_outline(page, [(p.index, False)])
-    found += [read_arrow(page, *group) for group in arrow_groups(page, p) if group[0] == (p.index,)]
+    found += read_arrows(page, [group for group in arrow_groups(page, p) if group[0] == (p.index,)])
     return [f.cost for f in found if f is not None]

@@ -140,14 +140,15 @@ def _point(v: list[float]) -> Point:
 
 def _heads(page: Page, shaft: Piece, tip: Point) -> list[int]:
     """The pieces nearest to a shaft's tip that are small enough to be its head."""
-    reach = 0.5 * shaft.length
+    reach, span = 0.5 * shaft.length, 1.2 * shaft.length
     x, y = tip
     found = []
     for q in page.touching(x - reach, y - reach, x + reach, y + reach):
-        if q is shaft or not page.apart(q.index, (shaft.index,)) or q.extent > 2 * shaft.length:
+        x0, y0, x1, y1 = q.box
+        if max(x - x0, y - y0, x1 - x, y1 - y) >= span or q is shaft or q.extent > 2 * shaft.length:
             continue
         d = np.hypot(q.points[:, 0] - x, q.points[:, 1] - y)
         closest = float(d.min())
-        if closest < reach and float(d.max()) < 1.2 * shaft.length:
+        if closest < reach and float(d.max()) < span and page.apart(q.index, (shaft.index,)):
             found.append((closest, q.index))
     return [j for _, j in sorted(found)[:HEADS]]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -13,11 +15,12 @@ from sketch.library import library
 __all__ = [
     "SIDES",
     "ArrowFit",
+    "ArrowGroup",
     "ClosedFit",
     "Strokes",
     "cuts",
     "depth",
-    "fit_arrow",
+    "fit_arrows",
     "fit_closed",
     "is_simple",
     "joined",
@@ -26,6 +29,8 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
+Point = tuple[float, float]
+ArrowGroup = tuple[tuple[int, ...], Point, Point]  # strokes, the tail and a point toward the tip [pixels]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
 _lib = library()
@@ -34,7 +39,7 @@ _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_po
     ("ink_closed", _lib)
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
-_arrow = ctypes.CFUNCTYPE(_int, *[_pointer] * 3, _int, *[_pointer] * 7)(("ink_arrow", _lib))
+_arrows = ctypes.CFUNCTYPE(None, *[_pointer] * 4, _int, _pointer, _int, _pointer)(("ink_arrows", _lib))
 _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
 _off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
@@ -97,15 +102,15 @@ class ArrowFit(NamedTuple):
     """An arrow on some strokes: points [pixels] and angles [rad] (see core/arrow.c).
 
     lengths, ink: of the shaft and of each barb, and of the ink nearest to each [pixels].
-    off: mean squared distance of each stroke from the arrow [pixels²].  bare: of the arrow from the ink.
+    bare: mean squared distance of the arrow from the ink [pixels²].  off: of each stroke from the arrow.
     """
 
     head: Array
     lengths: list[float]
     angles: list[float]
     ink: list[float]
-    off: list[float]
     bare: float
+    off: list[float]
 
 
 _COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1))  # of ink_closed's results, in order
@@ -172,33 +177,32 @@ def fit_closed(
     )
 
 
-def fit_arrow(
-    strokes: Strokes, names: tuple[int, ...], tail: tuple[float, float], toward: tuple[float, float]
-) -> ArrowFit | None:
-    """Fit an arrow to strokes, given its tail and a point on its shaft [pixels]; None where they have no
-    head."""
-    chosen = np.array(names, dtype=np.int32)
-    inputs = np.array((*tail, *toward))
-    out = np.empty(15 + len(names))
-    at, given = out.ctypes.data, inputs.ctypes.data
-    if not _arrow(
+def fit_arrows(strokes: Strokes, groups: Sequence[ArrowGroup]) -> list[ArrowFit | None]:
+    """Fit an arrow to each of some groups of strokes; None where they have no head."""
+    if not groups:
+        return []
+    names, ends = [i for g in groups for i in g[0]], accumulate(len(g[0]) for g in groups)
+    which = np.array([*names, *ends], dtype=np.int32)
+    given = np.array([(*tail, *toward) for _, tail, toward in groups])
+    width = 15 + max(len(g[0]) for g in groups)
+    out = np.empty((len(groups), width))
+    at = which.ctypes.data
+    _arrows(
         strokes.samples.ctypes.data,
         strokes.measure.ctypes.data,
-        chosen.ctypes.data,
-        len(names),
-        given,
-        given + 16,
         at,
-        at + 48,
-        at + 72,
-        at + 88,
-        at + 112,
-    ):
-        return None
-    values = out.tolist()
-    return ArrowFit(
-        out[:6].reshape(3, 2), values[6:9], values[9:11], values[11:14], values[14:-1], values[-1]
+        at + 4 * len(names),
+        len(groups),
+        given.ctypes.data,
+        width,
+        out.ctypes.data,
     )
+    return [
+        ArrowFit(row[:6].reshape(3, 2), v[6:9], v[9:11], v[11:14], v[14], v[15 : 15 + len(g[0])])
+        if v[6] > 0
+        else None
+        for row, v, g in zip(out, out.tolist(), groups, strict=True)
+    ]
 
 
 def cuts(points: Array) -> tuple[list[float], list[int]]:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
 
 import numpy as np
 
 from sketch.bodies import thick
-from sketch.kernel import fit_arrow, is_simple, off_outline
+from sketch.kernel import ArrowFit, ArrowGroup, fit_arrows, is_simple, off_outline
 from sketch.outlines import RETRACE
-from sketch.pieces import Array, Page, Piece, Point
+from sketch.pieces import Array, Page, Piece
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of, unread
 
-__all__ = ["line_of_any_course", "read_arrow", "read_bar", "read_cross", "read_line", "with_strays"]
+__all__ = ["line_of_any_course", "read_arrows", "read_bar", "read_cross", "read_line", "with_strays"]
 
 MOST_BENDS = 5
 BEND = 3.0  # nats for each corner of a bar
@@ -120,13 +120,30 @@ def _cross(a: Vertex, b: Vertex, c: Vertex, d: Vertex, names: tuple[int, ...], o
     return Fitted("cross", names, cost, np.array([a, b, c, d]), figure=np.array([a, b, d, a, c, b, c, d, c]))
 
 
-def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -> Fitted | None:
-    """A shaft from `tail` toward the tip, and a head of two barbs; None where the ink has no head."""
-    pieces = [page.pieces[i] for i in names]
-    fit = fit_arrow(page.strokes, tuple(p.stroke for p in pieces), tail, toward)
-    if fit is None:
-        return None
+def read_arrows(
+    page: Page, groups: Sequence[ArrowGroup], most: Sequence[float] | None = None
+) -> list[Fitted | None]:
+    """Of each group of pieces a shaft from its tail toward the tip, and a head of two barbs; None where the ink
+    has no head, or where it takes more than `most` of the group [nats]."""
+    limits = [math.inf] * len(groups) if most is None else most
+    return [
+        None if fit is None else _arrow(page, group, fit, limit)
+        for group, fit, limit in zip(groups, fit_arrows(page.strokes, groups), limits, strict=True)
+    ]
+
+
+def _arrow(page: Page, group: ArrowGroup, fit: ArrowFit, most: float) -> Fitted | None:
+    names, tail, _ = group
     shaft, left, right = fit.lengths
+    # a head is two barbs alike, at some 35 degrees, less than half as long as the shaft
+    alike = (math.log(left / right) / 0.35) ** 2
+    size = (math.log((left + right) / 2 / shaft / 0.45) / 0.4) ** 2
+    spread = sum(((angle - 0.6) / 0.25) ** 2 for angle in fit.angles)
+    # tail and tip; the head is said by how unlike a head it is
+    unlike = 0.5 * (alike + size + spread)
+    if RARE_ARROW + 4 * PARAMETER + unlike > most:
+        return None
+    pieces = [page.pieces[i] for i in names]
     # an arrow whose ends meet is no loop, nor a barb that was drawn forth and back
     whole = (
         [SHAFT * shaft]
@@ -144,12 +161,7 @@ def read_arrow(page: Page, names: tuple[int, ...], tail: Point, toward: Point) -
     parts = zip((shaft, left, right), OFTEN, fit.ink, strict=True)
     wrong = sum(max(long - ink, ink - often * long, 0.0) for long, often, ink in parts)
     again = FREE * wrong / sum(fit.ink) * count + misfit(fit.bare / (GAPS * shaft) ** 2, count)
-    # a head is two barbs alike, at some 35 degrees, less than half as long as the shaft
-    alike = (math.log(left / right) / 0.35) ** 2
-    size = (math.log((left + right) / 2 / shaft / 0.45) / 0.4) ** 2
-    spread = sum(((angle - 0.6) / 0.25) ** 2 for angle in fit.angles)
-    # tail and tip; the head is said by how unlike a head it is
-    cost = RARE_ARROW + 4 * PARAMETER + off + again + 0.5 * (alike + size + spread)
+    cost = RARE_ARROW + 4 * PARAMETER + off + again + unlike
     tip, left, right = fit.head.tolist()
     figure = np.array([tail, tip, left, tip, right, tip])
     return Fitted("arrow", tuple(sorted(names)), cost, np.array([tail, tip]), figure=figure)

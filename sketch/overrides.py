@@ -10,7 +10,7 @@ import numpy as np
 
 from sim.scene import InputError
 from sketch.grouping import arrow_groups, closing_chains
-from sketch.marks import line_of_any_course, read_arrow, read_bar, read_cross
+from sketch.marks import line_of_any_course, read_arrows, read_bar, read_cross
 from sketch.outlines import Chain, read_outline
 from sketch.pieces import Page, Piece
 from sketch.scoring import Fitted, unread
@@ -69,12 +69,8 @@ def forced_reading(page: Page, strokes: tuple[int, ...], kind: str) -> Fitted | 
 
 
 def _arrow(page: Page, names: tuple[int, ...]) -> Fitted | None:
-    found = [
-        read_arrow(page, group, tail, toward)
-        for i in names
-        for group, tail, toward in arrow_groups(page, page.pieces[i])
-        if tuple(sorted(group)) == names
-    ]
+    groups = [g for i in names for g in arrow_groups(page, page.pieces[i]) if tuple(sorted(g[0])) == names]
+    found = read_arrows(page, groups)
     return min((f for f in found if f is not None), key=lambda f: f.cost, default=None)
 
 

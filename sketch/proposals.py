@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.grouping import arrow_groups, closing_chains, closing_ink, crosses
-from sketch.marks import read_arrow, read_bar, read_cross, read_line, with_strays
+from sketch.marks import read_arrows, read_bar, read_cross, read_line, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
 from sketch.pieces import End, Looked, Page, Piece
 from sketch.scoring import Fitted, unread
@@ -28,7 +28,6 @@ HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less
 
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
 Fits = dict[Key, list[Fitted]]
-Fitting = Callable[[Key, Callable[[], list[Fitted]]], list[Fitted]]
 Box = tuple[float, float, float, float]
 
 
@@ -188,18 +187,24 @@ class Proposals:
             for names in crosses(page, p):
                 for cross in fitted((names, "cross"), lambda n=names: _kept(read_cross(page, n))):  # type: ignore[misc]
                     out += [cross, *with_strays(page, cross, self.free)]
-            out += self._arrows(p, fitted)
+            out += self._arrows(p, known, fits)
         said = [(c, sum(self.free[i] for i in c.pieces) - c.cost) for c in out]
         likely = [(c, gain) for c, gain in said if gain > -HOPELESS]
         return proposing([c for c, _ in likely], [gain for _, gain in likely], looked, fits)
 
-    def _arrows(self, p: Piece, fitted: Fitting) -> list[Fitted]:
+    def _arrows(self, p: Piece, known: Fits, fits: Fits) -> list[Fitted]:
         """Arrows of which a piece is the shaft, the best of each group."""
         page = self.page
+        groups = {
+            (names, (tail, toward)): (names, tail, toward) for names, tail, toward in arrow_groups(page, p)
+        }
+        new = {key: group for key, group in groups.items() if key not in known}
+        most = [HOPELESS + sum(self.free[i] for i in names) for names, _ in new]
+        fresh = dict(zip(new, map(_kept, read_arrows(page, list(new.values()), most)), strict=True))
         best: dict[tuple[int, ...], Fitted] = {}
-        for names, tail, toward in arrow_groups(page, p):
-            key = names, (tail, toward)
-            for arrow in fitted(key, lambda n=names, a=tail, b=toward: _kept(read_arrow(page, n, a, b))):  # type: ignore[misc]
+        for key in groups:
+            fits[key] = known[key] if key in known else fresh[key]
+            for arrow in fits[key]:
                 for mark in [arrow, *with_strays(page, arrow, self.free)]:
                     if mark.pieces not in best or mark.cost < best[mark.pieces].cost:
                         best[mark.pieces] = mark

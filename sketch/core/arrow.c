@@ -5,16 +5,19 @@
 
 enum { STEPS = 12 }; /* along each part of an arrow, to look for its ink */
 
-/* samples: of every stroke of the page, (strokes, SAMPLES, 2) [pixels]; names: the strokes meant, `count` of them.
- * length: of each stroke, a row of `measure` apart [pixels].
- * tail, toward: the shaft's tail and a point on the way to the tip.
- * Out: head (2) and barbs' ends (4) [pixels]; lengths (3): of the shaft and the barbs; angles (2): between barb and shaft;
- * off[k]: mean squared distance of the k-th stroke from the arrow [pixels²]; off[count]: of the arrow from the ink.
- * ink (3): length of the ink that is nearest to the shaft, and to each barb.
- * Returns 0 where the ink has no head: a barb on each side, pointing back. */
-INK_API int32_t ink_arrow(const double *samples, const double *length, const int32_t *names, int32_t count,
-                          const double *tail, const double *toward, double *head, double *lengths, double *angles,
-                          double *ink, double *off) {
+typedef struct {
+    double head[6]; /* the tip and the barbs' ends [pixels] */
+    double lengths[3]; /* of the shaft and of the barbs [pixels] */
+    double angles[2]; /* between barb and shaft */
+    double ink[3]; /* length of the ink that is nearest to the shaft, and to each barb [pixels] */
+    double bare; /* mean squared distance of the arrow from the ink [pixels²] */
+    double off[]; /* of each stroke from the arrow */
+} Arrow;
+
+/* The arrow on `count` strokes; returns 0 where the ink has no head: a barb on each side, pointing back. */
+static int fit_arrow(const double *samples, const double *length, const int32_t *names, int count, const double *tail,
+                     const double *toward, Arrow *out) {
+    double *head = out->head, *lengths = out->lengths, *angles = out->angles, *ink = out->ink, *off = out->off;
     double ux = toward[0] - tail[0], uy = toward[1] - tail[1], l = hypot(ux, uy);
     if (l <= 0) return 0;
     ux /= l;
@@ -69,7 +72,7 @@ INK_API int32_t ink_arrow(const double *samples, const double *length, const int
     /* An arrow has ink along all of it: a barb that nobody drew is as far off as ink that no arrow has. */
     const double *part[3][2] = {{origin, tip}, {tip, left}, {tip, right}};
     double whole = lengths[0] + lengths[1] + lengths[2];
-    off[count] = 0;
+    out->bare = 0;
     for (int e = 0; e < 3; e++) {
         double bare = 0;
         for (int i = 0; i < STEPS; i++) {
@@ -86,7 +89,7 @@ INK_API int32_t ink_arrow(const double *samples, const double *length, const int
             }
             bare += nearest / STEPS;
         }
-        off[count] += bare * lengths[e] / whole;
+        out->bare += bare * lengths[e] / whole;
     }
     const double *at[3] = {tip, left, right};
     for (int e = 0; e < 3; e++) {
@@ -94,4 +97,19 @@ INK_API int32_t ink_arrow(const double *samples, const double *length, const int
         head[2 * e + 1] = tail[1] + at[e][0] * uy + at[e][1] * ux;
     }
     return 1;
+}
+
+/* Arrows on groups of strokes.
+ *
+ * samples: of every stroke of the page, (strokes, SAMPLES, 2) [pixels]; length: of each stroke, a row of `measure` apart
+ * [pixels]; names: the strokes of the groups, one after another; ends: where each of `count` groups ends.
+ * given: (count, 4): of each, the shaft's tail and a point on the way to the tip.
+ * Out: fits: for each group a row of `width` doubles, an Arrow; one without a head has a shaft of length 0. */
+INK_API void ink_arrows(const double *samples, const double *length, const int32_t *names, const int32_t *ends,
+                        int32_t count, const double *given, int32_t width, double *fits) {
+    for (int g = 0, first = 0; g < count; first = ends[g++]) {
+        Arrow *arrow = (Arrow *)(fits + width * g);
+        if (!fit_arrow(samples, length, names + first, ends[g] - first, given + 4 * g, given + 4 * g + 2, arrow))
+            arrow->lengths[0] = 0;
+    }
 }
