@@ -11,13 +11,11 @@ from itertools import combinations
 
 import numpy as np
 
-from sketch.outlines import Chain
-from sketch.pieces import LOOSE, Array, Page, Piece, Point
+from sketch.loose import Chain
+from sketch.pieces import Array, Page, Piece, Point
 
 __all__ = ["arrow_groups", "closing_chains", "closing_ink", "crosses"]
 
-MOST_PARTS = 6  # of one outline: people draw a box in one to five strokes
-MOST_STEPS = 400  # from one piece, of chains that may close
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
 MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
 MOST_OPEN = 4  # and of those with wide gaps, which are many in a tangle
@@ -31,32 +29,7 @@ HEADS = 4  # strokes near a shaft's end that are tried as its head
 def closing_chains(page: Page, start: int) -> list[Chain]:
     """Orders of pieces whose ends meet around, of which `start` is the first drawn, each set of pieces in its
     tightest order, the tightest first."""
-    pieces = page.pieces
-    best: dict[tuple[int, ...], tuple[float, float, Chain]] = {}
-    steps = 0  # in shading every end has many others near it
-
-    def extend(chain: Chain, names: tuple[int, ...], gaps: float, ink: float) -> None:
-        nonlocal steps
-        steps += 1
-        if steps > MOST_STEPS:
-            return
-        last, reverse = chain[-1]
-        out = 0 if reverse else 1
-        closing = math.dist(pieces[last].ends[out], pieces[start].ends[0])
-        if gaps + closing <= LOOSE * ink:
-            key = tuple(sorted(names))
-            if key not in best or gaps + closing < best[key][0]:
-                best[key] = (gaps + closing, ink, chain)
-        if len(chain) == MOST_PARTS:
-            return
-        for d, j, e in page.near((last, out)):
-            if j > start and j not in names and page.apart(j, names):
-                longer = ink + pieces[j].length
-                if gaps + d <= LOOSE * 2 * longer:
-                    extend([*chain, (j, e == 1)], (*names, j), gaps + d, longer)
-
-    extend([(start, False)], (start,), 0.0, pieces[start].length)
-    tightest = sorted(best.values(), key=lambda t: t[0] / t[1])
+    tightest = sorted(page.chains(start), key=lambda t: t[0] / t[1])
     close = sum(gaps <= WIDE * ink for gaps, ink, _ in tightest)
     wide = MOST_CHAINS if page.rivals else MOST_OPEN
     return [chain for _, _, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline
+from sketch.loose import Chain
 from sketch.pieces import Page
 from sketch.scoring import PARAMETER, Fitted, misfit, unread
 
-__all__ = ["LEAST_AXIS", "Chain", "gone_over", "read_outline"]
+__all__ = ["LEAST_AXIS", "gone_over", "read_outline"]
 
 Array = NDArray[np.float64]
-Chain = list[tuple[int, bool]]  # pieces that go once around, each with whether it was drawn the other way
 
 MOST_SIDES = 12
 ROUND = 39.5  # nats that a round outline is rarer than its three parameters say

@@ -10,8 +10,9 @@ import numpy as np
 
 from sim.scene import InputError
 from sketch.grouping import arrow_groups, closing_chains
+from sketch.loose import Chain
 from sketch.marks import line_of_any_course, read_arrows, read_bar, read_cross
-from sketch.outlines import Chain, read_outline
+from sketch.outlines import read_outline
 from sketch.pieces import Page, Piece
 from sketch.scoring import Fitted, unread
 

@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 
 from sketch.ink import Sketch
 from sketch.kernel import joined, measure
+from sketch.loose import Chain, End, LooseEnds
 
-__all__ = ["LOOSE", "Looked", "Page", "Piece", "page_of"]
+__all__ = ["Looked", "Page", "Piece", "page_of"]
 
 DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
-LOOSE = 0.3  # gaps of a chain, as a share of its ink, overshoots counted as gaps
-REACH = 1.5 * LOOSE  # the longest single gap, as a share of the pieces on its two sides
-CHOICES = 6  # ends that a chain may go on to
 FEW = 8  # pieces, of which each is looked at as a whole
 PLACES = (0, 16, 31, 47)  # of the samples of a stroke
 ASTRAY = 0.3  # of a piece's size: ink further off than this does not run along something
@@ -25,8 +23,6 @@ OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wi
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
-End = tuple[int, int]  # of a piece: its index, and 0 or 1
-Near = tuple[float, int, int]  # how far an end is [pixels], and which
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -81,7 +77,7 @@ class Looked:
 
     Attributes:
         boxes: least x, least y, greatest x, greatest y [pixels].
-        ends: of pieces (piece, 0 or 1), whose neighbours were asked for.
+        ends: whose neighbours were asked for.
     """
 
     boxes: list[tuple[float, float, float, float]] = field(default_factory=list)
@@ -97,6 +93,7 @@ class Page:
         size: of the page [pixels]; the canvas', or so much more as the ink takes.
         rivals: of each stroke, the others that are the same ink, followed in another way: no two of them are in
             one reading.  Without any, empty.
+        ends: of its pieces, as far as they are loose.
         looked: where it is noted what is asked of the page.
     """
 
@@ -106,12 +103,10 @@ class Page:
         self.pieces: dict[int, Piece] = {}
         self.strokes = measure([])
         self.size = self._canvas = canvas
+        self.ends = LooseEnds(rivals)
         self.looked = Looked()
         self._dot = 0.0
         self._boxes = np.empty((0, 4))
-        self._ends = np.empty((0, 2))  # of the loose pieces; rows 2i and 2i + 1 are of piece i
-        self._lengths = np.empty(0)
-        self._near: dict[End, list[Near]] = {}
 
     def add(self, strokes: list[Array]) -> range:
         """Measure further strokes, each (n, 2) in pixels; returns their indices."""
@@ -121,14 +116,15 @@ class Page:
         self.strokes = joined(self.strokes, new)
         count = len(strokes)
         self._boxes = np.concatenate([self._boxes, np.full((count, 4), np.nan)])
-        self._ends = np.concatenate([self._ends, np.full((2 * count, 2), np.nan)])
-        self._lengths = np.concatenate([self._lengths, np.zeros(2 * count)])
+        ends = np.zeros((count, 2, 2))
         residuals, vertices = new.residual.tolist(), new.vertices.tolist()
         for k, m in enumerate(new.measure.tolist()):
             if m[0] > 0:
                 i = first + k
                 self.pieces[i] = _piece(i, i, points[k], m, residuals[k], vertices[k], self._dot)
                 self._boxes[i] = self.pieces[i].box
+                ends[k] = self.pieces[i].ends
+        self.ends.add(ends, new.measure[:, 0])
         return range(first, first + count)
 
     def remove(self, index: int) -> None:
@@ -194,62 +190,11 @@ class Page:
         inside = (b[:, 0] <= x1) & (b[:, 1] <= y1) & (b[:, 2] >= x0) & (b[:, 3] >= y0)
         return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
 
-    def near(self, end: End) -> list[Near]:
-        """The nearest ends of other loose pieces that a chain may go on to from this end."""
-        self.looked.ends.add(end)
-        found = self._near.get(end)
-        if found is None:
-            close, gaps = self._reached(end)
-            if self.rivals:
-                own = np.array([self.apart(end[0], (j // 2,)) for j in close.tolist()], dtype=bool)
-                close, gaps = close[own], gaps[own]
-            order = np.argsort(gaps, kind="stable")[:CHOICES]
-            found = [
-                (g, j // 2, j % 2) for g, j in zip(gaps[order].tolist(), close[order].tolist(), strict=True)
-            ]
-            self._near[end] = found
+    def chains(self, start: int) -> list[tuple[float, float, Chain]]:
+        """As of `LooseEnds.chains`."""
+        found, asked = self.ends.chains(start)
+        self.looked.ends |= asked
         return found
-
-    def _reached(self, end: End) -> tuple[NDArray[np.intp], Array]:
-        """Rows of the ends of other loose pieces within reach of an end, and how far they are [pixels]."""
-        row = 2 * end[0] + end[1]
-        x, y = self._ends[row].tolist()
-        gaps = np.hypot(self._ends[:, 0] - x, self._ends[:, 1] - y)
-        reached = gaps <= REACH * (self._lengths + self._lengths[row])
-        reached[row - end[1] : row - end[1] + 2] = False
-        close = np.flatnonzero(reached)
-        return close, gaps[close]
-
-    def loosen(self, index: int) -> set[End]:
-        """Let chains go through a piece. Returns the ends whose neighbours are others now."""
-        p = self.pieces[index]
-        self._ends[2 * index : 2 * index + 2] = p.ends
-        self._lengths[2 * index : 2 * index + 2] = p.length
-        changed = set()
-        for e in (0, 1) if self._near else ():
-            close, gaps = self._reached((index, e))
-            for j, gap in zip(close.tolist(), gaps.tolist(), strict=True):
-                known = self._near.get((j // 2, j % 2))
-                if known is not None and (len(known) < CHOICES or gap <= known[-1][0]):
-                    changed.add((j // 2, j % 2))
-        for end in changed:
-            self._near.pop(end)
-        return changed
-
-    def tighten(self, index: int) -> set[End]:
-        """Let no chain go through a piece any more. Returns the ends whose neighbours are others now."""
-        changed = set()
-        for e in (0, 1):
-            if np.isnan(self._ends[2 * index, 0]):
-                break
-            self._near.pop((index, e), None)
-            for j in self._reached((index, e))[0].tolist():
-                if any(i == index for _, i, _ in self._near.get((j // 2, j % 2), ())):
-                    changed.add((j // 2, j % 2))
-        for end in changed:
-            self._near.pop(end)
-        self._ends[2 * index : 2 * index + 2] = np.nan
-        return changed
 
 
 def page_of(sketch: Sketch) -> Page:

@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.grouping import arrow_groups, closing_chains, closing_ink, crosses
+from sketch.loose import End
 from sketch.marks import read_arrows, read_bar, read_cross, read_line, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
-from sketch.pieces import End, Looked, Page, Piece
+from sketch.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted, unread
 
 __all__ = ["Box", "Proposals", "Proposed", "proposing"]
@@ -127,14 +128,14 @@ class Proposals:
             self.free[i] = unread(self.page.pieces[i])
             self._alone[i] = self._read_alone(self.page.pieces[i])
         for i in sorted(again.union(new)):
-            ends = set() if self._alone[i].complete else self.page.loosen(i)
+            ends = set() if self._alone[i].complete else self.page.ends.loosen(i)
             self._touch(i, ends)
             self._stale.add(i)
 
     def _forget(self, index: int) -> None:
         """Whatever was said of a piece's ink is said anew."""
         del self._alone[index]
-        self._touch(index, self.page.tighten(index))
+        self._touch(index, self.page.ends.tighten(index))
 
     def _touch(self, index: int, ends: set[End]) -> None:
         """Let those propose anew who looked where a piece comes or goes, or at these ends."""

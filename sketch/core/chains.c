@@ -1,0 +1,139 @@
+/* Orders of pieces of ink whose ends meet around: the outlines that they may make. */
+#include "fit.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    CHOICES = 6,      /* ends that a chain may go on to, the nearest */
+    MOST_PARTS = 6,   /* of one outline: people draw a box in one to five strokes */
+    MOST_STEPS = 400, /* from one piece, of chains that may close: in shading every end has many others near it */
+    UNKNOWN = -1
+};
+
+static const double LOOSE = 0.3; /* gaps of a chain, as a share of its ink, overshoots counted as gaps */
+static const double REACH = 1.5 * 0.3; /* the longest single gap, as a share of the pieces on its two sides */
+
+typedef struct {
+    int32_t links
+        [MOST_PARTS]; /* ends that the pieces begin with: 2 * piece, or one more where it is gone through backward */
+    int32_t names[MOST_PARTS]; /* the pieces, in order */
+    int parts;
+    double gaps, ink; /* lengths [pixels] */
+} Chain;
+
+typedef struct {
+    int rows;                     /* ends: rows 2i and 2i + 1 are of piece i */
+    const double *at, *length;    /* (rows, 2) [pixels]; (rows) of their pieces */
+    const uint8_t *loose;         /* (rows) whether chains go through it */
+    const int32_t *rivals,
+        *from; /* of piece i the pieces, in order, that share ink with it: rivals[from[i] .. from[i + 1]] */
+    int32_t *count, *near;        /* of each end the nearest others, or UNKNOWN: how many, (rows, CHOICES) which */
+    double *gap;                  /* and how far [pixels] */
+    int steps, found, asked;
+    int32_t *ends; /* whose neighbours were asked for */
+    Chain way, best[MOST_STEPS];
+} Search;
+
+static int apart(const Search *s, int i, int j) {
+    if (!s->from) return 1;
+    for (int r = s->from[i]; r < s->from[i + 1]; r++)
+        if (s->rivals[r] == j) return 0;
+    return 1;
+}
+
+/* The nearest ends of other loose pieces that a chain may go on to from an end. */
+static void look_around(Search *s, int end) {
+    int32_t *near = s->near + CHOICES * end;
+    double *gap = s->gap + CHOICES * end, x = s->at[2 * end], y = s->at[2 * end + 1];
+    int n = 0;
+    for (int j = 0; j < s->rows && s->loose[end]; j++) {
+        double dx = s->at[2 * j] - x, dy = s->at[2 * j + 1] - y, reach = REACH * (s->length[j] + s->length[end]);
+        if (!s->loose[j] || fabs(dx) > reach || fabs(dy) > reach || j / 2 == end / 2) continue;
+        double d = hypot(dx, dy);
+        if (d > reach || (n == CHOICES && d >= gap[n - 1]) || !apart(s, end / 2, j / 2)) continue;
+        int k = n < CHOICES ? n++ : CHOICES - 1;
+        for (; k > 0 && gap[k - 1] > d; k--) {
+            gap[k] = gap[k - 1];
+            near[k] = near[k - 1];
+        }
+        gap[k] = d;
+        near[k] = j;
+    }
+    s->count[end] = n;
+}
+
+/* Keep the chain if it is the tightest of its pieces. */
+static void keep(Search *s, double gaps, double ink) {
+    Chain *way = &s->way;
+    way->gaps = gaps;
+    way->ink = ink;
+    for (int k = 0; k < way->parts; k++) {
+        int at = k, name = way->links[k] / 2;
+        for (; at > 0 && way->names[at - 1] > name; at--) way->names[at] = way->names[at - 1];
+        way->names[at] = name;
+    }
+    for (int b = 0; b < s->found; b++) {
+        Chain *other = &s->best[b];
+        if (other->parts == way->parts && !memcmp(other->names, way->names, way->parts * sizeof *way->names)) {
+            if (gaps < other->gaps) *other = *way;
+            return;
+        }
+    }
+    s->best[s->found++] = *way;
+}
+
+static void extend(Search *s, double gaps, double ink) {
+    Chain *way = &s->way;
+    if (++s->steps > MOST_STEPS) return;
+    int start = way->links[0], last = way->links[way->parts - 1] ^ 1;
+    double closing = hypot(s->at[2 * last] - s->at[2 * start], s->at[2 * last + 1] - s->at[2 * start + 1]);
+    if (gaps + closing <= LOOSE * ink) keep(s, gaps + closing, ink);
+    if (way->parts == MOST_PARTS) return;
+    s->ends[s->asked++] = last;
+    if (s->count[last] == UNKNOWN) look_around(s, last);
+    for (int c = 0; c < s->count[last]; c++) {
+        int next = s->near[CHOICES * last + c], own = next / 2 > start / 2;
+        for (int k = 0; k < way->parts; k++) own = own && way->links[k] / 2 != next / 2;
+        for (int k = 0; k < way->parts; k++) own = own && apart(s, next / 2, way->links[k] / 2);
+        double longer = ink + s->length[next], wider = gaps + s->gap[CHOICES * last + c];
+        if (!own || wider > 2 * LOOSE * longer) continue;
+        way->links[way->parts++] = next;
+        extend(s, wider, longer);
+        way->parts--;
+    }
+}
+
+/* Chains that close and of which piece `start` is the first: each set of pieces in its tightest order.
+ *
+ * rows .. gap: as in Search; from may be null: no two pieces share ink.
+ * Out: links (MOST_STEPS, MOST_PARTS), and of each chain parts, gaps [pixels] and ink [pixels]; ends: those whose neighbours
+ * were asked for, MOST_STEPS at most, asked: how many. Returns the number of chains. */
+INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length, const uint8_t *loose,
+                           const int32_t *rivals, const int32_t *from, int32_t *count, int32_t *near, double *gap,
+                           int32_t start, int32_t *links, int32_t *parts, double *gaps, double *ink, int32_t *ends,
+                           int32_t *asked) {
+    Search s;
+    s.rows = rows;
+    s.at = at;
+    s.length = length;
+    s.loose = loose;
+    s.rivals = rivals;
+    s.from = from;
+    s.count = count;
+    s.near = near;
+    s.gap = gap;
+    s.steps = s.found = s.asked = 0;
+    s.ends = ends;
+    s.way.links[0] = 2 * start;
+    s.way.parts = 1;
+    extend(&s, 0, length[2 * start]);
+    for (int c = 0; c < s.found; c++) {
+        memcpy(links + MOST_PARTS * c, s.best[c].links, sizeof s.best[c].links);
+        parts[c] = s.best[c].parts;
+        gaps[c] = s.best[c].gaps;
+        ink[c] = s.best[c].ink;
+    }
+    *asked = s.asked;
+    return s.found;
+}
