@@ -55,14 +55,18 @@ class Context:
         """
         around = [k for k in chosen if candidates[k].closed or candidates[k].kind == "cross"]
         boxes = np.concatenate([np.empty((0, 4)), *(p.boxes for p in proposed)])
-        bodies = _Bodies([candidates[k] for k in around], boxes[around])
+        extents = np.hypot(*(boxes[:, 2:] - boxes[:, :2]).T)
+        bodies = _Bodies(
+            [candidates[k] for k in around], np.column_stack([boxes[around], extents[around]]).tolist()
+        )
         known, self._known = self._known, {}
         out: list[float] = []
         for p, near in zip(proposed, bodies.beside([p.box for p in proposed]), strict=True):
             there = known.get(p)
             its = [bodies.bodies[b] for b in near]
             if there is None or there[0] != its or there[1] != size:
-                there = its, size, _told(p, _Bodies(its, bodies.boxes[near]), size)
+                own = extents[len(out) : len(out) + len(p.candidates)].tolist()
+                there = its, size, _told(p, own, _Bodies(its, [bodies.rows[b] for b in near]), size)
             self._known[p] = there
             out += there[2]
         first = _first_arrow(candidates, out, chosen)
@@ -74,10 +78,9 @@ class Context:
         return out
 
 
-def _told(proposed: Proposed, bodies: _Bodies, size: float) -> list[float]:
-    """The gains of one piece's proposals, given the bodies around them."""
+def _told(proposed: Proposed, extents: list[float], bodies: _Bodies, size: float) -> list[float]:
+    """The gains of one piece's proposals, given how large each is [pixels] and the bodies around them."""
     gains = list(proposed.gains)
-    extents = np.hypot(*(proposed.boxes[:, 2:] - proposed.boxes[:, :2]).T).tolist()
     for k, (c, extent) in enumerate(zip(proposed.candidates, extents, strict=True)):
         if gains[k] < -NO_BODY:
             continue
@@ -166,12 +169,14 @@ def _extent(outline: Array) -> float:
 class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
-    def __init__(self, bodies: list[Fitted], boxes: Array) -> None:
+    def __init__(self, bodies: list[Fitted], rows: list[list[float]]) -> None:
+        """rows: of each its least x, least y, greatest x, greatest y and extent [pixels]."""
         self.bodies = bodies
-        self.boxes = boxes
-        self.low, self.high = boxes[:, :2], boxes[:, 2:]
-        self.extent = np.hypot(*(self.high - self.low).T)
-        self.rows = np.column_stack([boxes, self.extent]).tolist()
+        self.rows = rows
+        self.extent = [row[4] for row in rows]
+        self.crosses = [
+            (extent, c) for extent, c in zip(self.extent, bodies, strict=True) if c.kind == "cross"
+        ]
 
     def beside(self, boxes: list[Box]) -> list[list[int]]:
         """Which bodies can matter to marks in each of these boxes."""
@@ -179,9 +184,9 @@ class _Bodies:
         if not self.bodies or not boxes:
             return out
         x0, y0, x1, y1 = np.array(boxes).T[:, :, None]
-        r = np.maximum(0.1 * self.extent, np.hypot(np.maximum(x1 - x0, 0), np.maximum(y1 - y0, 0)))
-        close = (self.low[:, 0] - r <= x1) & (self.low[:, 1] - r <= y1)
-        close &= (self.high[:, 0] + r >= x0) & (self.high[:, 1] + r >= y0)
+        left, top, right, bottom, extent = np.array(self.rows).T
+        r = np.maximum(0.1 * extent, np.hypot(np.maximum(x1 - x0, 0), np.maximum(y1 - y0, 0)))
+        close = (left - r <= x1) & (top - r <= y1) & (right + r >= x0) & (bottom + r >= y0)
         for i, b in np.argwhere(close).tolist():
             out[i].append(b)
         return out
@@ -220,10 +225,12 @@ class _Bodies:
 
     def ground(self, line: Fitted) -> bool:
         """Whether an X of other ink stands on an open line, and on no closed outline."""
+        if not self.crosses:
+            return False
         mine, dense = set(line.pieces), _dense(line.outline)
         most = _extent(line.outline) / LARGER
-        for extent, mark in zip(self.extent, self.bodies, strict=True):
-            if mark.kind == "cross" and extent < most and mine.isdisjoint(mark.pieces):
+        for extent, mark in self.crosses:
+            if extent < most and mine.isdisjoint(mark.pieces):
                 off = np.hypot(*(dense - mark.outline.mean(axis=0)).T).min()
                 if off < ON_LINE * extent and not self.around(mark, 0.0):
                     return True

@@ -18,6 +18,7 @@ __all__ = [
     "ArrowGroup",
     "ClosedFit",
     "Strokes",
+    "course",
     "cuts",
     "depth",
     "fit_arrows",
@@ -33,6 +34,7 @@ Point = tuple[float, float]
 ArrowGroup = tuple[tuple[int, ...], Point, Point]  # strokes, the tail and a point toward the tip [pixels]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
+COURSE = 32  # as in core/course.c
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 7)(
@@ -43,6 +45,7 @@ _arrows = ctypes.CFUNCTYPE(None, *[_pointer] * 4, _int, _pointer, _int, _pointer
 _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
 _off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
+_course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 
 
@@ -211,6 +214,16 @@ def cuts(points: Array) -> tuple[list[float], list[int]]:
     shares, kinds = np.empty(PARTS + 1), np.empty(PARTS, dtype=np.int32)
     count = _cut(points.ctypes.data, len(points), shares.ctypes.data, kinds.ctypes.data)
     return ([0.0, 1.0], [0]) if count < 2 else (shares[: count + 1].tolist(), kinds[:count].tolist())
+
+
+def course(points: Array, pen: float) -> Array | None:
+    """An open line, (n, 2), as COURSE sides in equal steps; None where it crosses itself.
+
+    pen: what it is at least as thick as [pixels].
+    """
+    line = np.empty((COURSE + 1, 2))
+    given = np.ascontiguousarray(points)
+    return line if _course(given.ctypes.data, len(given), pen, line.ctypes.data) else None
 
 
 def off_outline(strokes: Strokes, index: int, outline: Array) -> float:

@@ -9,8 +9,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from sketch.bodies import thick
-from sketch.kernel import ArrowFit, ArrowGroup, fit_arrows, is_simple, off_outline
+from sketch.kernel import ArrowFit, ArrowGroup, course, fit_arrows, off_outline
 from sketch.outlines import RETRACE
 from sketch.pieces import Array, Page, Piece
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of, unread
@@ -31,8 +30,7 @@ OFTEN = (
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
 RARE = 25.0  # nats that an open line is rarer than an outline
 ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning
-COURSE = 32  # sides that it is drawn with,
-THIN = 0.004  # of its length: what it is as thick as, at least
+THIN = 0.004  # of the length of such a line: what it is as thick as, at least
 RARE_ARROW = 2.0  # likewise for an arrow: there is one on a page, or none
 
 Vertex = list[float]
@@ -65,12 +63,8 @@ def read_line(piece: Piece) -> Fitted | None:
 
 
 def line_of_any_course(piece: Piece) -> Array | None:
-    """A piece's ink as COURSE sides in equal steps [pixels]; None where it crosses itself."""
-    points = piece.points
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    t = np.linspace(0, along[-1], COURSE + 1)
-    line = np.stack([np.interp(t, along, points[:, k]) for k in (0, 1)], axis=1)
-    return line if is_simple(thick(line, THIN * piece.length)) else None
+    """A piece's ink as a few sides in equal steps [pixels]; None where it crosses itself."""
+    return course(piece.points, THIN * piece.length)
 
 
 def _turning(v: list[Vertex]) -> float:

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Hashable, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -222,11 +223,15 @@ def proposing(
 ) -> Proposed:
     """Readings with their gains; looked, fits: what they depend on, and were made of."""
     seen = Looked() if looked is None else looked
-    rows = [(*c.outline.min(axis=0).tolist(), *c.outline.max(axis=0).tolist()) for c in candidates]
-    boxes = np.array(rows, dtype=np.float64).reshape(-1, 4)
-    return Proposed(
-        candidates, gains, boxes, _around(rows), seen, _around(seen.boxes), {} if fits is None else fits
-    )
+    boxes, box = np.empty((0, 4)), _around([])
+    if candidates:
+        outlines = [c.outline for c in candidates]
+        first = np.fromiter(accumulate(map(len, outlines[:-1]), initial=0), dtype=np.intp)
+        points = np.concatenate(outlines)
+        low, high = np.minimum.reduceat(points, first), np.maximum.reduceat(points, first)
+        boxes = np.concatenate([low, high], axis=1)
+        box = (*low.min(axis=0).tolist(), *high.max(axis=0).tolist())
+    return Proposed(candidates, gains, boxes, box, seen, _around(seen.boxes), {} if fits is None else fits)
 
 
 def _kept(found: Fitted | None) -> list[Fitted]:
