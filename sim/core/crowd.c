@@ -16,11 +16,9 @@ Crowd *crowd_create(const World *world, Recorder *recorder) {
     crowd->shape_count = world->shape_count;
     crowd->piece_count = world->piece_count;
     crowd->active = calloc((size_t)world->body_count, sizeof *crowd->active);
-    crowd->heat = calloc((size_t)world->body_count, sizeof *crowd->heat);
     crowd->mover = calloc((size_t)world->body_count, sizeof *crowd->mover);
     crowd->pressed = calloc((size_t)world->body_count, sizeof *crowd->pressed);
-    bool made = crowd->mover && crowd->active && crowd->heat && crowd->pressed &&
-                pivots_create(&crowd->pivots, world) == SIM_OK;
+    bool made = crowd->mover && crowd->active && crowd->pressed && pivots_create(&crowd->pivots, world) == SIM_OK;
     if (!made || touch_create(crowd, world) != SIM_OK || rest_create(crowd, world) != SIM_OK) {
         crowd_destroy(crowd);
         return NULL;
@@ -34,7 +32,6 @@ void crowd_destroy(Crowd *crowd) {
     rest_destroy(crowd);
     free(crowd->mover);
     free(crowd->active);
-    free(crowd->heat);
     free(crowd->pressed);
     pivots_destroy(&crowd->pivots);
     free(crowd);
@@ -58,8 +55,8 @@ static void move(Crowd *crowd, double dt) {
 
 static void find_pressed(Crowd *crowd) {
     for (int32_t k = 0; k < crowd->active_count; k++) crowd->pressed[crowd->active[k]] = false;
-    for (int32_t i = 0; i < crowd->contact_count; i++) {
-        const Contact *c = &crowd->contact[i];
+    for (int32_t i = 0; i < crowd->rows.count; i++) {
+        const Contact *c = &crowd->rows.contact[i];
         if (contact_presses(c)) crowd->pressed[c->a] = crowd->pressed[c->b] = true;
     }
     crowd->pressed[0] = false;
@@ -67,23 +64,22 @@ static void find_pressed(Crowd *crowd) {
 
 static int substep(Crowd *crowd, World *world, double left, double dt) {
     Mover *mover = crowd->mover;
+    Rows *rows = &crowd->rows;
     double threshold = 4 * dt * vlength(world->gravity);
     int status = SIM_OK;
     touch_refresh(crowd, world, left);
     accelerate(crowd, world, dt);
-    bool bounces = contacts_measure(crowd->contact, crowd->contact_count, mover, threshold);
-    contacts_warm_start(crowd->contact, crowd->contact_count, mover);
+    rows_measure(rows, 0, mover, threshold);
+    rows_warm_start(rows, 0, mover);
     bool found = true;
     for (int32_t look = 0; found && look < LOOKS && status == SIM_OK; look++) {
         bool heated = true;
         for (int32_t pass = 0; heated && pass < PASSES; pass++) {
             pivots_solve(&crowd->pivots, mover);
-            crowd->passes++;
-            heated = contacts_solve(crowd->contact, crowd->contact_count, mover, dt, crowd->heat, crowd->passes,
-                                    look == 0 && pass == 0);
+            heated = rows_solve(rows, mover, dt, look == 0 && pass == 0);
         }
-        status = touch_near(crowd, world, left, dt, threshold, &found, &bounces);
-        if (contacts_foresee(crowd->contact, crowd->contact_count, mover, dt, crowd->heat, crowd->passes)) found = true;
+        status = touch_near(crowd, world, left, dt, threshold, &found);
+        if (gap_foresee(rows, mover, crowd->active, crowd->active_count, dt)) found = true;
     }
     if (status != SIM_OK) return status;
     move(crowd, dt);
@@ -91,13 +87,13 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     pivots_join(&crowd->pivots, mover, 1 / dt, crowd->pressed);
     pivots_factor(&crowd->pivots, mover);
     crowd->moment++;
-    contacts_part(crowd->contact, crowd->contact_count, mover, dt);
+    gap_close(rows, mover, dt);
     pivots_join(&crowd->pivots, mover, 0, NULL);
     pivots_solve(&crowd->pivots, mover);
-    if (bounces) contacts_bounce(crowd->contact, crowd->contact_count, mover);
-    if (bounces) status = events_tell_impacts(crowd, world);
+    rows_bounce(rows, mover);
+    status = events_tell_impacts(crowd, world);
     world->profile.crowd_steps++;
-    world->profile.crowd_contacts += crowd->contact_count;
+    world->profile.crowd_contacts += rows->count;
     return status;
 }
 
@@ -125,7 +121,7 @@ static int frame(Crowd *crowd, World *world, double dt, double end) {
     status = pivots_load(&crowd->pivots, world, crowd->mover);
     if (status != SIM_OK) return status;
     pivots_factor(&crowd->pivots, crowd->mover);
-    contacts_limit(crowd->contact, crowd->contact_count, crowd->mover, h);
+    gap_limit(crowd->rows.contact, crowd->rows.count, crowd->mover, h);
     for (int32_t k = 0; k < substeps && status == SIM_OK; k++) {
         crowd->time = k + 1 < substeps ? end - (substeps - 1 - k) * h : end;
         status = substep(crowd, world, dt - k * h, h);
@@ -138,7 +134,7 @@ static int frame(Crowd *crowd, World *world, double dt, double end) {
     if (status == SIM_OK) status = rest_update(crowd, world, dt);
     if (status != SIM_OK) return status;
     rest_wake_nudged(crowd, world);
-    return memory_store(&crowd->memory, crowd->contact, crowd->contact_count, crowd->mover);
+    return memory_store(&crowd->memory, crowd->rows.contact, crowd->rows.count, crowd->mover);
 }
 
 static void release(Crowd *crowd, World *world) {

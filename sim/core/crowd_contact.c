@@ -11,9 +11,13 @@ static void fill_point(Contact *c, int32_t k, Vec ra, Vec rb, double radius_a, d
     c->mobility[k] =
         c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * na * na + c->inverse_moment_b * nb * nb;
     c->mass_n[k] = 1 / c->mobility[k];
-    /* a disk touches with another point of it as it turns: its centre counts */
-    c->along_na[k] = vdot(ra, n) + (c->side > 0 ? radius_b : -radius_a);
-    c->along_nb[k] = vdot(rb, n) + (c->side < 0 ? -radius_a : radius_b);
+    c->cross[k] = c->inverse_moment_a * na * c->spin_ta + c->inverse_moment_b * nb * c->spin_tb;
+    /* how far along the normal the corner is that turns; a disk touches with another point of it as it turns: its centre */
+    double a = vdot(ra, n) + (c->side > 0 ? radius_b : -radius_a),
+           b = vdot(rb, n) + (c->side < 0 ? -radius_a : radius_b);
+    c->bend_aa[k] = c->side > 0 ? -0.5 * a : 0.5 * a;
+    c->bend_bb[k] = c->side < 0 ? 0.5 * b : -0.5 * b;
+    c->bend_ab[k] = c->side > 0 ? b : c->side < 0 ? -a : 0;
 }
 
 /* The row of friction acts halfway between the points. */
@@ -40,8 +44,12 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
     c->turned = b->turned - a->turned;
     c->moved = vsub(b->moved, a->moved);
     c->impulse_t = c->pair_mass = 0;
-    c->spin_na = c->spin_nb = c->mobility = c->mass_n = c->along_na = c->along_nb = none;
-    c->impulse_n = c->limit = c->approach = c->separation = none;
+    c->slide_a = c->side > 0;
+    c->slide_b = c->side < 0;
+    c->spin_na = c->spin_nb = c->mobility = c->mass_n = c->bend_aa = c->bend_bb = c->bend_ab = c->cross = none;
+    c->impulse_n = c->limit = c->separation = none;
+    Ends *ends = &crowd->rows.ends[c - crowd->rows.contact];
+    ends->kind = m->count == 0 ? KIND_OPEN : m->count == 1 ? KIND_ONE : KIND_TURNS;
     if (m->count == 0) return;
     Vec middle = m->count > 1 ? vscale(vadd(m->point[0].point, m->point[1].point), 0.5) : m->point[0].point;
     fill_friction(c, vsub(middle, at_a), vsub(middle, at_b));
@@ -62,14 +70,16 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
         c->impulse_n[k] = old->impulse_n[same];
         c->impulse_t = old->impulse_t;
     }
-    /* what the movers have done in the frame so far is in contact_separation(), and taken off here */
-    c->separation = found - contact_separation(c, a, b);
+    /* what the movers have done in the frame so far is in gap_now(), and taken off here */
+    c->separation = found - gap_now(c, a, b);
     if (c->count < 2) return;
     double k11 = c->mobility[0], k22 = c->mobility[1];
     c->coupling = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * c->spin_na[0] * c->spin_na[1] +
                   c->inverse_moment_b * c->spin_nb[0] * c->spin_nb[1];
     double determinant = k11 * k22 - c->coupling * c->coupling;
-    if (k11 * k22 < APART * determinant) c->pair_mass = 1 / determinant;
+    if (k11 * k22 >= APART * determinant) return;
+    c->pair_mass = 1 / determinant;
+    ends->kind = KIND_PAIR;
 }
 
 /* Bodies this slow come to rest by rolling resistance, as real ones do: without it a box rocks on a ball for ever. */
@@ -98,7 +108,9 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
     double reach = contact_reach(world, near->piece_a, near->piece_b);
-    Contact *c = &crowd->contact[crowd->contact_count++];
+    int32_t i = crowd->rows.count++;
+    Contact *c = &crowd->rows.contact[i];
+    crowd->rows.ends[i] = (Ends){near->a, near->b, KIND_OPEN};
     c->a = near->a;
     c->b = near->b;
     set_masses(c, &crowd->mover[near->a], &crowd->mover[near->b]);

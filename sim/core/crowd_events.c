@@ -24,11 +24,12 @@ static int tell(Crowd *crowd, const World *world, int32_t kind, uint64_t key, Ve
 /* Contacts whose points closed faster than a bounce is worth have had the whole impulse in this substep. */
 int events_tell_impacts(Crowd *crowd, const World *world) {
     if (!crowd->recorder) return SIM_OK;
-    for (int32_t i = 0; i < crowd->contact_count; i++) {
-        const Contact *c = &crowd->contact[i];
+    for (int32_t i = 0; i < crowd->rows.bounce_count; i++) {
+        const Bounce *bounce = &crowd->rows.bounce[i];
+        const Contact *c = &crowd->rows.contact[bounce->contact];
         double sum = 0, levers = 0;
         for (int32_t k = 0; k < c->count; k++) {
-            if (c->approach[k] == 0 || c->impulse_n[k] <= 0) continue;
+            if (bounce->approach[k] == 0 || c->impulse_n[k] <= 0) continue;
             sum += c->impulse_n[k];
             levers += c->impulse_n[k] * c->spin_na[k];
         }
@@ -50,7 +51,7 @@ bool events_touching(const Crowd *crowd, const World *world, const Contact *c) {
 static bool touches(const Crowd *crowd, const Contact *c) {
     if (contact_presses(c)) return true;
     if (!c->touching || c->count == 0) return false;
-    Two gap = contact_separation(c, &crowd->mover[c->a], &crowd->mover[c->b]);
+    Two gap = gap_now(c, &crowd->mover[c->a], &crowd->mover[c->b]);
     return gap[0] <= c->slop || (c->count > 1 && gap[1] <= c->slop);
 }
 
@@ -58,8 +59,8 @@ static bool touches(const Crowd *crowd, const Contact *c) {
 static bool others_touch(const Crowd *crowd, const World *world, uint64_t key) {
     int32_t a = world->piece[piece_a(key)].shape, b = world->piece[piece_b(key)].shape;
     if (world->shape[a].piece_count == 1 && world->shape[b].piece_count == 1) return false;
-    for (int32_t i = 0; i < crowd->contact_count; i++) {
-        const Contact *c = &crowd->contact[i];
+    for (int32_t i = 0; i < crowd->rows.count; i++) {
+        const Contact *c = &crowd->rows.contact[i];
         if (c->key == key || !touches(crowd, c)) continue;
         if (world->piece[piece_a(c->key)].shape == a && world->piece[piece_b(c->key)].shape == b) return true;
     }
@@ -77,8 +78,8 @@ static int tell_end(Crowd *crowd, const World *world, uint64_t key) {
 int events_tell_contacts(Crowd *crowd, const World *world) {
     int status = SIM_OK;
     if (!crowd->recorder) return SIM_OK;
-    for (int32_t i = 0; i < crowd->contact_count && status == SIM_OK; i++) {
-        Contact *c = &crowd->contact[i];
+    for (int32_t i = 0; i < crowd->rows.count && status == SIM_OK; i++) {
+        Contact *c = &crowd->rows.contact[i];
         bool now = touches(crowd, c);
         if (now && !c->touching) {
             double lever = c->count > 1 ? 0.5 * (c->spin_na[0] + c->spin_na[1]) : c->spin_na[0];

@@ -37,8 +37,6 @@ struct Crowd {
     Mover *mover; /* by body */
     int32_t *active; /* the bodies that take part in the frame */
     int32_t active_count;
-    int64_t *heat; /* by body: the last pass that changed it noticeably */
-    int64_t passes;
     Pose *start; /* by body: when the frame began */
     double *start_angle, *body_swing;
     Vec *lead; /* by body: how far ahead of the start its contacts are looked for */
@@ -58,8 +56,7 @@ struct Crowd {
     Index last_index;
     Vec *end; /* by body: where it was when that frame ended */
     double *end_angle;
-    Contact *contact;
-    int32_t contact_count, contact_capacity;
+    Rows rows; /* the contacts */
     Memory memory;
     Pivots pivots;
     bool *pressed; /* by body: a contact presses on it in the substep; not looked for without pivots */
@@ -131,7 +128,7 @@ int touch_create(Crowd *crowd, const World *world);
 void touch_destroy(Crowd *crowd);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
 void touch_refresh(Crowd *crowd, World *world, double left);
-int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found, bool *bounces);
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
 int touch_finish(Crowd *crowd, const World *world, double dt);
 
 /* crowd_events.c */

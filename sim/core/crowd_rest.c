@@ -142,8 +142,8 @@ static void find_island_times(Crowd *crowd, const World *world) {
         int32_t r = root(crowd->island, i);
         time[r] = smaller(time[r], crowd->touched[i] && !speeds_up(crowd, world, i) ? crowd->still_time[i] : 0);
     }
-    for (int32_t i = 0; i < crowd->contact_count; i++) {
-        const Contact *c = &crowd->contact[i];
+    for (int32_t i = 0; i < crowd->rows.count; i++) {
+        const Contact *c = &crowd->rows.contact[i];
         if (!contact_presses(c) || !crowd_moves(world, c->a) || !crowd_moves(world, c->b)) continue;
         int32_t a = root(crowd->island, c->a), b = root(crowd->island, c->b);
         time[a] = smaller(time[a], crowd->still_time[c->b]);

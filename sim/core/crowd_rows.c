@@ -2,18 +2,51 @@
  *
  * A pass goes through the rows in order and applies what each still lacks, with the sum clamped (contact: no pull;
  * friction: Coulomb's cone).  Contacts are rigid: soft ones sag under a pile by its load over their stiffness.  Overlap is
- * taken out of the positions themselves (nonlinear Gauss-Seidel), never by velocities: a jam gains no energy from it.
+ * taken out of the positions themselves (crowd_gap.c), never by velocities: a jam gains no energy from it.
+ *
+ * What a contact does next cannot be foretold: it presses or not, slides or not, matters or not.  A processor that guesses
+ * loses more time than a row takes, so rows choose by arithmetic, and lists of what is to be solved are made beforehand.
  */
 #include "crowd_rows.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 #include "broad.h"
+#include "sim.h"
 
-static const double RATE = 0.6; /* share of an overlap that a pass drives out */
+int rows_create(Rows *rows, int32_t mover_count) {
+    *rows = (Rows){.mover_count = mover_count, .hot = calloc((size_t)mover_count, sizeof *rows->hot)};
+    return rows->hot ? SIM_OK : SIM_OUT_OF_MEMORY;
+}
 
-static inline Two two(Vec v) { return (Two){v.x, v.y}; }
-static inline Two both(double x) { return (Two){x, x}; }
-static inline Two swapped(Two x) { return (Two){x[1], x[0]}; }
-static inline double sum_of(Two x) { return x[0] + x[1]; }
+int rows_room(Rows *rows, int32_t count) {
+    if (count <= rows->capacity) return SIM_OK;
+    int32_t capacity = 2 * count + 64;
+    size_t n = (size_t)capacity;
+    Contact *contact = realloc(rows->contact, n * sizeof *contact);
+    if (contact) rows->contact = contact;
+    Ends *ends = realloc(rows->ends, n * sizeof *ends);
+    if (ends) rows->ends = ends;
+    Bounce *bounce = realloc(rows->bounce, n * sizeof *bounce);
+    if (bounce) rows->bounce = bounce;
+    int32_t *list = realloc(rows->list, 4 * n * sizeof *list);
+    if (list) rows->list = list;
+    if (!contact || !ends || !bounce || !list) return SIM_OUT_OF_MEMORY;
+    rows->one = list + n, rows->other = list + 2 * n, rows->stale = list + 3 * n;
+    rows->stale_count = 0;
+    rows->capacity = capacity;
+    return SIM_OK;
+}
+
+void rows_destroy(Rows *rows) {
+    free(rows->contact);
+    free(rows->ends);
+    free(rows->bounce);
+    free(rows->list);
+    free(rows->hot);
+    *rows = (Rows){0};
+}
 
 /* A contact's two bodies while its rows are solved, held in registers: through pointers every store might change the rest. */
 typedef struct Meeting {
@@ -42,8 +75,12 @@ static inline void push(const Contact *c, Meeting *m, Two direction, double impu
     m->spin_b += c->inverse_moment_b * twist_b;
 }
 
-static inline void push_normal(const Contact *c, Meeting *m, Two impulse) {
+static inline void push_pair(const Contact *c, Meeting *m, Two impulse) {
     push(c, m, normal_of(c), sum_of(impulse), sum_of(c->spin_na * impulse), sum_of(c->spin_nb * impulse));
+}
+
+static inline void push_point(const Contact *c, int32_t k, Meeting *m, double impulse) {
+    push(c, m, normal_of(c), impulse, c->spin_na[k] * impulse, c->spin_nb[k] * impulse);
 }
 
 static inline void push_tangent(const Contact *c, Meeting *m, double impulse) {
@@ -51,9 +88,14 @@ static inline void push_tangent(const Contact *c, Meeting *m, double impulse) {
 }
 
 /* At which the points of b leave those of a. */
-static inline Two normal_speed(const Contact *c, const Meeting *m) {
+static inline Two pair_speed(const Contact *c, const Meeting *m) {
     double v = sum_of(normal_of(c) * (m->velocity_b - m->velocity_a));
     return both(v) + both(m->spin_b) * c->spin_nb - both(m->spin_a) * c->spin_na;
+}
+
+static inline double point_speed(const Contact *c, int32_t k, const Meeting *m) {
+    double v = sum_of(normal_of(c) * (m->velocity_b - m->velocity_a));
+    return v + m->spin_b * c->spin_nb[k] - m->spin_a * c->spin_na[k];
 }
 
 static inline double tangent_speed(const Contact *c, const Meeting *m) {
@@ -61,204 +103,159 @@ static inline double tangent_speed(const Contact *c, const Meeting *m) {
     return v + m->spin_b * c->spin_tb - m->spin_a * c->spin_ta;
 }
 
-/* The second order of how the gaps change as two bodies turn by the angles and move apart by `apart` along the side: the
- * corner goes on a circle, the side turns away under it. */
-static inline Two second_order(const Contact *c, double turned_a, double turned_b, double apart) {
-    Two a = both(turned_a) * c->along_na, b = both(turned_b) * c->along_nb, half = both(0.5);
-    Two squares_a = half * both(turned_a) * a, squares_b = half * both(turned_b) * b;
-    if (c->side > 0) return both(turned_a) * (b + both(apart)) - squares_a - squares_b;
-    if (c->side < 0) return squares_a + squares_b - both(turned_b) * (a - both(apart));
-    return squares_a - squares_b;
-}
-
-/* When the bodies have moved and turned so in the frame. */
-static inline Two separation_at(const Contact *c, Vec apart, double turned_a, double turned_b) {
-    return c->separation + both(vdot(apart, c->normal)) + both(turned_b) * c->spin_nb - both(turned_a) * c->spin_na +
-           second_order(c, turned_a, turned_b, vcross(c->normal, apart));
-}
-
-static inline Two separation(const Contact *c, const Mover *a, const Mover *b) {
-    return separation_at(c, vsub(b->moved, a->moved), a->turned, b->turned);
-}
-
-Two contact_separation(const Contact *c, const Mover *a, const Mover *b) { return separation(c, a, b); }
-
-static inline void set_limit(Contact *c, Two gap, double inverse_dt) {
-    c->limit = (Two){gap[0] > 0 ? -gap[0] * inverse_dt : 0, gap[1] > 0 ? -gap[1] * inverse_dt : 0};
-}
-
-void contacts_limit(Contact *contact, int32_t count, const Mover *mover, double dt) {
-    for (int32_t i = 0; i < count; i++) {
-        Contact *c = &contact[i];
-        set_limit(c, separation(c, &mover[c->a], &mover[c->b]), 1 / dt);
+void rows_measure(Rows *rows, int32_t from, const Mover *mover, double threshold) {
+    int32_t count = 0;
+    if (from == 0) rows->bounce_count = 0;
+    for (int32_t i = from; i < rows->count; i++) { /* those with a point that does not press already */
+        const Contact *c = &rows->contact[i];
+        rows->list[count] = i;
+        count += (c->impulse_n[0] == 0) | ((c->impulse_n[1] == 0) & (c->count > 1));
+    }
+    for (int32_t k = 0; k < count; k++) {
+        const Contact *c = &rows->contact[rows->list[k]];
+        Meeting m = meet(&mover[c->a], &mover[c->b]);
+        Two v = pair_speed(c, &m), none = {0, 0}, approach;
+        approach[0] = (c->count > 0) & (c->impulse_n[0] == 0) & (v[0] < -threshold) ? v[0] : none[0];
+        approach[1] = (c->count > 1) & (c->impulse_n[1] == 0) & (v[1] < -threshold) ? v[1] : none[1];
+        rows->bounce[rows->bounce_count] = (Bounce){rows->list[k], approach};
+        rows->bounce_count += (approach[0] < 0) | (approach[1] < 0);
     }
 }
 
-void contacts_warm_start(Contact *contact, int32_t count, Mover *mover) {
-    for (int32_t i = 0; i < count; i++) {
-        Contact *c = &contact[i];
+void rows_warm_start(Rows *rows, int32_t from, Mover *mover) {
+    for (int32_t i = from; i < rows->count; i++) {
+        const Contact *c = &rows->contact[i];
         if (c->impulse_n[0] == 0 && c->impulse_n[1] == 0 && c->impulse_t == 0) continue;
         Mover *a = &mover[c->a], *b = &mover[c->b];
         Meeting m = meet(a, b);
-        push_normal(c, &m, c->impulse_n);
+        push_pair(c, &m, c->impulse_n);
         push_tangent(c, &m, c->impulse_t);
         leave(&m, a, b);
     }
 }
 
-bool contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold) {
-    bool any = false;
-    for (int32_t i = 0; i < count; i++) {
-        Contact *c = &contact[i];
-        c->approach = both(0);
-        if (c->impulse_n[0] > 0 && (c->impulse_n[1] > 0 || c->count < 2)) continue;
-        Meeting m = meet(&mover[c->a], &mover[c->b]);
-        Two v = normal_speed(c, &m);
-        for (int32_t k = 0; k < c->count; k++) {
-            if (c->impulse_n[k] > 0 || v[k] >= -threshold) continue;
-            c->approach[k] = v[k];
-            any = true;
-        }
-    }
-    return any;
-}
-
-static inline void solve_friction(Contact *c, Meeting *m, double pressed) {
-    if (pressed == 0 && c->impulse_t == 0) return;
-    double most = c->friction * pressed;
-    double sum = c->impulse_t - c->mass_t * tangent_speed(c, m);
-    sum = sum > most ? most : sum < -most ? -most : sum;
-    double impulse = sum - c->impulse_t;
+/* The rest of a contact's rows, once its normal impulse has changed by `change` and its points press with `pressed` in all:
+ * friction between the two, then rolling resistance, a torque against the spin between them that is as strong as the normal
+ * force on a short lever.  The speed along the contact is what it was before the change, plus what that makes of it. */
+static inline void finish(Contact *c, Meeting *m, double tangent, double change, double twist_a, double twist_b,
+                          double pressed) {
+    double most = c->friction * pressed, had = c->impulse_t;
+    double sum = larger(-most, smaller(most, had - c->mass_t * tangent));
+    double along = sum - had;
     c->impulse_t = sum;
-    push_tangent(c, m, impulse);
+    Two impulse = both(change) * normal_of(c) + both(along) * tangent_of(c);
+    m->velocity_a -= both(c->inverse_mass_a) * impulse;
+    m->velocity_b += both(c->inverse_mass_b) * impulse;
+    m->spin_a -= c->inverse_moment_a * (twist_a + c->spin_ta * along);
+    m->spin_b += c->inverse_moment_b * (twist_b + c->spin_tb * along);
+    double limit = c->rolling * pressed;
+    double twist = larger(-limit, smaller(limit, (m->spin_a - m->spin_b) * c->twist_mass));
+    m->spin_a -= c->inverse_moment_a * twist;
+    m->spin_b += c->inverse_moment_b * twist;
 }
 
-/* Bring the normal velocity of a point to what is wanted, without pulling. Returns the impulse. */
-static inline double solve_normal(Contact *c, int32_t k, Meeting *m, double wanted) {
-    double sum = c->impulse_n[k] - c->mass_n[k] * (normal_speed(c, m)[k] - wanted);
-    sum = sum > 0 ? sum : 0;
-    double impulse = sum - c->impulse_n[k];
-    if (impulse == 0) return 0;
-    c->impulse_n[k] = sum;
-    push(c, m, normal_of(c), impulse, c->spin_na[k] * impulse, c->spin_nb[k] * impulse);
-    return impulse;
-}
-
-/* Rolling resistance: a torque against the spin between the two, as strong as the normal force on a short lever. */
-static inline void solve_rolling(const Contact *c, Meeting *m, double pressed) {
-    double most = c->rolling * pressed;
-    double wanted = (m->spin_a - m->spin_b) * c->twist_mass;
-    wanted = wanted > most ? most : wanted < -most ? -most : wanted;
-    m->spin_a -= c->inverse_moment_a * wanted;
-    m->spin_b += c->inverse_moment_b * wanted;
+/* All rows of a contact of one point. Returns the change of the point's velocity by its own impulse. */
+static inline double solve_one(Contact *c, Meeting *m) {
+    double had = c->impulse_n[0];
+    double sum = larger(0, had - c->mass_n[0] * (point_speed(c, 0, m) - c->limit[0]));
+    double change = sum - had;
+    c->impulse_n[0] = sum;
+    finish(c, m, tangent_speed(c, m) + change * c->cross[0], change, c->spin_na[0] * change, c->spin_nb[0] * change,
+           sum);
+    return fabs(change) * c->mobility[0];
 }
 
 /* Both normal rows of a contact at once, so that neither end of a box goes first: the linear complementarity problem of two
- * rows by its four cases (Catto's Box2D). Returns the larger change of a point's velocity by its own impulse. */
+ * rows by its four cases (Catto's Box2D); then the rest. Returns the larger change of a point's velocity by its own impulse. */
 static inline double solve_pair(Contact *c, Meeting *m) {
-    Two k = c->mobility, k12 = both(c->coupling), had = c->impulse_n;
+    Two k = c->mobility, k12 = both(c->coupling), had = c->impulse_n, none = {0, 0};
     /* what the velocities would be, beyond the limits, without the impulses so far */
-    Two free = normal_speed(c, m) - c->limit - k * had - k12 * swapped(had);
+    Two free = pair_speed(c, m) - c->limit - k * had - k12 * swapped(had);
     Two impulse = (k12 * swapped(free) - swapped(k) * free) * both(c->pair_mass);
-    if (impulse[0] < 0 || impulse[1] < 0) {
-        Two alone = -free * c->mass_n;
-        if (alone[0] >= 0 && c->coupling * alone[0] + free[1] >= 0)
-            impulse = (Two){alone[0], 0};
-        else if (alone[1] >= 0 && c->coupling * alone[1] + free[0] >= 0)
-            impulse = (Two){0, alone[1]};
-        else
-            impulse = both(0);
-    }
+    Two alone = -free * c->mass_n, other = k12 * alone + swapped(free);
+    bool pressed = (impulse[0] >= 0) & (impulse[1] >= 0);
+    bool first = (alone[0] >= 0) & (other[0] >= 0), second = !first & (alone[1] >= 0) & (other[1] >= 0);
+    alone[0] = first ? alone[0] : none[0];
+    alone[1] = second ? alone[1] : none[1];
+    impulse = pressed ? impulse : alone;
     Two change = impulse - had;
     c->impulse_n = impulse;
-    push_normal(c, m, change);
+    finish(c, m, tangent_speed(c, m) + sum_of(change * c->cross), sum_of(change), sum_of(c->spin_na * change),
+           sum_of(c->spin_nb * change), sum_of(impulse));
     change *= k;
     return larger(fabs(change[0]), fabs(change[1]));
 }
 
-bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first) {
+/* Bring the normal velocity of a point to what is wanted, without pulling. Returns the impulse. */
+static inline double solve_point(Contact *c, int32_t k, Meeting *m, double wanted) {
+    double sum = larger(0, c->impulse_n[k] - c->mass_n[k] * (point_speed(c, k, m) - wanted));
+    double impulse = sum - c->impulse_n[k];
+    c->impulse_n[k] = sum;
+    push_point(c, k, m, impulse);
+    return impulse;
+}
+
+/* Two points that are too close together for their matrix: one after the other. */
+static double solve_in_turn(Contact *c, Meeting *m) {
+    double first = fabs(solve_point(c, 0, m, c->limit[0])) * c->mobility[0];
+    double second = fabs(solve_point(c, 1, m, c->limit[1])) * c->mobility[1];
+    finish(c, m, tangent_speed(c, m), 0, 0, 0, sum_of(c->impulse_n));
+    return larger(first, second);
+}
+
+/* All contacts, or those of hot bodies, which are hot no longer. Returns how many there are in rows->list. */
+static int32_t list_contacts(Rows *rows, bool all) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < rows->count; i++) {
+        const Ends *ends = &rows->ends[i];
+        rows->list[count] = i;
+        count += all | rows->hot[ends->a] | rows->hot[ends->b];
+    }
+    memset(rows->hot, 0, (size_t)rows->mover_count * sizeof *rows->hot);
+    return count;
+}
+
+static inline bool leave_noticed(Rows *rows, const Contact *c, const Meeting *m, Mover *mover, double change,
+                                 double dt) {
+    bool noticed = change * dt > c->fine;
+    leave(m, &mover[c->a], &mover[c->b]);
+    rows_heat(rows, mover, c->a, noticed);
+    rows_heat(rows, mover, c->b, noticed);
+    return noticed;
+}
+
+bool rows_solve(Rows *rows, Mover *mover, double dt, bool all) {
+    int32_t listed = list_contacts(rows, all), ones = 0, others = 0;
     bool heated = false;
-    for (int32_t i = 0; i < count; i++) {
-        Contact *c = &contact[i];
-        if (!first && heat[c->a] < pass - 1 && heat[c->b] < pass - 1) continue;
-        Mover *a = &mover[c->a], *b = &mover[c->b];
-        Meeting m = meet(a, b);
-        double change = 0;
-        if (c->pair_mass > 0) {
-            change = solve_pair(c, &m);
-        } else {
-            for (int32_t k = 0; k < c->count; k++)
-                change = larger(change, fabs(solve_normal(c, k, &m, c->limit[k])) * c->mobility[k]);
-        }
-        double pressed = sum_of(c->impulse_n);
-        solve_friction(c, &m, pressed);
-        if (c->rolling > 0) solve_rolling(c, &m, pressed);
-        leave(&m, a, b);
-        if (change * dt <= c->fine) continue;
-        heated = true;
-        if (a->inverse_mass > 0) heat[c->a] = pass;
-        if (b->inverse_mass > 0) heat[c->b] = pass;
+    for (int32_t k = 0; k < listed; k++) {
+        int32_t i = rows->list[k], kind = rows->ends[i].kind;
+        rows->one[ones] = rows->other[others] = i;
+        ones += kind == KIND_ONE;
+        others += kind > KIND_ONE;
+    }
+    for (int32_t k = 0; k < ones; k++) {
+        Contact *c = &rows->contact[rows->one[k]];
+        Meeting m = meet(&mover[c->a], &mover[c->b]);
+        double change = solve_one(c, &m);
+        heated |= leave_noticed(rows, c, &m, mover, change, dt);
+    }
+    for (int32_t k = 0; k < others; k++) {
+        Contact *c = &rows->contact[rows->other[k]];
+        Meeting m = meet(&mover[c->a], &mover[c->b]);
+        double change = c->pair_mass > 0 ? solve_pair(c, &m) : solve_in_turn(c, &m);
+        heated |= leave_noticed(rows, c, &m, mover, change, dt);
     }
     return heated;
 }
 
-bool contacts_foresee(Contact *contact, int32_t count, const Mover *mover, double dt, int64_t *heat, int64_t pass) {
-    static const double FAST = 0.03; /* [rad] in the substep */
-    bool any = false;
-    for (int32_t i = 0; i < count; i++) {
-        Contact *c = &contact[i];
-        const Mover *a = &mover[c->a], *b = &mover[c->b];
-        if (larger(fabs(a->spin), fabs(b->spin)) * dt < FAST) continue;
-        Vec apart = vsub(b->moved, a->moved), way = vscale(vsub(b->velocity, a->velocity), dt);
-        Meeting m = meet(a, b);
-        Two now = separation(c, a, b), linear = both(dt) * normal_speed(c, &m);
-        Two then = separation_at(c, vadd(apart, way), a->turned + dt * a->spin, b->turned + dt * b->spin);
+void rows_bounce(Rows *rows, Mover *mover) {
+    for (int32_t i = 0; i < rows->bounce_count; i++) {
+        Contact *c = &rows->contact[rows->bounce[i].contact];
+        Two approach = rows->bounce[i].approach;
         for (int32_t k = 0; k < c->count; k++) {
-            double gap = larger(now[k], 0) + smaller(then[k] - now[k] - linear[k], 0);
-            double limit = gap > 0 ? -gap / dt : 0; /* never more: to push by a guess could gain energy */
-            if (fabs(limit - c->limit[k]) * dt <= c->fine) continue;
-            c->limit[k] = limit;
-            if (a->inverse_mass > 0) heat[c->a] = pass;
-            if (b->inverse_mass > 0) heat[c->b] = pass;
-            any = true;
-        }
-    }
-    return any;
-}
-
-/* Take a share of the overlaps out of the positions, and set the limits of the next substep. */
-void contacts_part(Contact *contact, int32_t count, Mover *mover, double dt) {
-    double inverse_dt = 1 / dt;
-    for (int32_t i = 0; i < count; i++) {
-        Contact *c = &contact[i];
-        Mover *a = &mover[c->a], *b = &mover[c->b];
-        Two gap = separation(c, a, b), depth = -gap - both(c->slop);
-        set_limit(c, gap, inverse_dt);
-        if (depth[0] <= 0 && (depth[1] <= 0 || c->count < 2)) continue;
-        depth = (Two){smaller(depth[0], c->slack), smaller(depth[1], c->slack)};
-        Two push = {0, 0};
-        if (c->pair_mass > 0)
-            push = (depth * swapped(c->mobility) - both(c->coupling) * swapped(depth)) * both(c->pair_mass);
-        if (c->pair_mass == 0 || push[0] < 0 || push[1] < 0) { /* the deeper one alone */
-            push = depth * c->mass_n;
-            push[c->count < 2 || depth[0] > depth[1]] = 0;
-        }
-        push *= both(RATE);
-        double sum = sum_of(push);
-        a->moved = vmad(a->moved, -sum * c->inverse_mass_a, c->normal);
-        a->turned -= c->inverse_moment_a * sum_of(c->spin_na * push);
-        b->moved = vmad(b->moved, sum * c->inverse_mass_b, c->normal);
-        b->turned += c->inverse_moment_b * sum_of(c->spin_nb * push);
-    }
-}
-
-void contacts_bounce(Contact *contact, int32_t count, Mover *mover) {
-    for (int32_t i = 0; i < count; i++) {
-        Contact *c = &contact[i];
-        for (int32_t k = 0; k < c->count; k++) {
-            if (c->approach[k] == 0 || c->impulse_n[k] <= 0) continue;
+            if (approach[k] == 0 || c->impulse_n[k] <= 0) continue;
             Meeting m = meet(&mover[c->a], &mover[c->b]);
-            solve_normal(c, k, &m, -c->elasticity * c->approach[k]);
+            solve_point(c, k, &m, -c->elasticity * approach[k]);
             leave(&m, &mover[c->a], &mover[c->b]);
         }
     }

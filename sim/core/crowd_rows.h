@@ -19,6 +19,20 @@ typedef struct Mover {
 /* A number for each of a contact's two points, reckoned with lane by lane (an extension that gcc and clang share). */
 typedef double Two __attribute__((vector_size(16), aligned(8)));
 
+/* How a contact's normal rows are solved. */
+typedef enum Kind {
+    KIND_OPEN,  /* it has no points now */
+    KIND_ONE,   /* one point */
+    KIND_PAIR,  /* both points at once */
+    KIND_TURNS, /* both points in turn: they are too close together for their matrix */
+} Kind;
+
+/* What every pass asks of a contact, apart from what it solves it by: few cache lines hold it for all of them. */
+typedef struct Ends {
+    int32_t a, b; /* movers */
+    int32_t kind;
+} Ends;
+
 /* What the passes read comes first: it is what the cache holds.  The points of a contact lie on one line, along which they
  * slide as one: a single row of friction does for both.  Where there is but one point the second's numbers are 0. */
 typedef struct Contact {
@@ -34,46 +48,90 @@ typedef struct Contact {
     double coupling; /* of the two points: how a push at one moves the other [1/kg] */
     double pair_mass; /* 1 / determinant of their 2 x 2 matrix; 0: too close together to be solved as a pair */
     double fine; /* of a substep: a way too short to matter [m] */
+    Two cross; /* how a push along the normal moves the contact along itself [1/kg] */
     double spin_ta, spin_tb; /* r x t */
     double mass_t, impulse_t;
     double friction;
     double rolling; /* lever of the rolling resistance [m]; 0: none */
-    double twist_mass; /* 1 / the sum of the inverse moments, where there is rolling resistance */
-    double elasticity;
-    double slack; /* how far the pair may shift before its points are found anew [m] */
-    double slop; /* overlap that is left alone, so that resting contacts do not come and go [m] */
+    double twist_mass; /* 1 / the sum of the inverse moments, where there is rolling resistance; else 0 */
     Two separation; /* when the frame began */
-    Two along_na, along_nb; /* r . n of the corner or centre that touches, for the second order of turning */
-    Two approach; /* normal velocity before the touch, for restitution; 0 when none is due */
+    /* The second order of how the gaps change: of the squares of the turns of a and b, of their product, and of each times
+     * the way along the side (crowd_gap.c). */
+    Two bend_aa, bend_bb, bend_ab;
+    double slide_a, slide_b;
+    double slop; /* overlap that is left alone, so that resting contacts do not come and go [m] */
+    double slack; /* how far the pair may shift before its points are found anew [m] */
     double turned; /* of b against a when the points were found, in this frame */
     Vec moved; /* likewise */
+    double elasticity;
     uint64_t key; /* the pieces */
     bool touching; /* as has been told (crowd_events.c) */
 } Contact;
 
+/* A contact whose points are about to touch so fast that they are to bounce. */
+typedef struct Bounce {
+    int32_t contact;
+    Two approach; /* normal velocities before the touch; 0 where none is due */
+} Bounce;
+
+typedef struct Rows {
+    Contact *contact;
+    Ends *ends; /* of each contact */
+    int32_t count, capacity;
+    bool *hot; /* by mover: something changed it noticeably since the last pass made its list */
+    int32_t mover_count;
+    int32_t *list, *one, *other; /* contacts to be solved in a pass: all, those of one point, the rest */
+    int32_t *stale; /* contacts whose bodies have turned or shifted a good deal since their points were found */
+    int32_t stale_count;
+    Bounce *bounce;
+    int32_t bounce_count;
+} Rows;
+
+int rows_create(Rows *rows, int32_t mover_count);
+
+/* Room for so many contacts. SIM_OK or SIM_OUT_OF_MEMORY. */
+int rows_room(Rows *rows, int32_t count);
+void rows_destroy(Rows *rows);
+
+/* A body that can move is hot: its contacts are to be solved again. */
+static inline void rows_heat(Rows *rows, const Mover *mover, int32_t body, bool noticed) {
+    rows->hot[body] |= noticed & (mover[body].inverse_mass > 0);
+}
+
 static inline bool contact_presses(const Contact *c) { return c->impulse_n[0] > 0 || c->impulse_n[1] > 0; }
 
+/* C's fmin and fmax are calls, for the sake of NaN; so may be choices, which a processor guesses wrong. */
+static inline Two two(Vec v) { return (Two){v.x, v.y}; }
+static inline Two both(double x) { return (Two){x, x}; }
+static inline Two swapped(Two x) { return (Two){x[1], x[0]}; }
+static inline double sum_of(Two x) { return x[0] + x[1]; }
+
+/* Solving for velocities (crowd_rows.c); `from`: the first contact that it is for. */
+
+/* Once for each contact of a substep, before it is solved: how fast points that are about to touch approach; those that do
+ * faster than the threshold are to bounce. */
+void rows_measure(Rows *rows, int32_t from, const Mover *mover, double threshold);
+
+/* Once for each contact of a substep: the impulses of the substep before. */
+void rows_warm_start(Rows *rows, int32_t from, Mover *mover);
+
+/* One pass, to all contacts or to those of hot bodies only.  Whether it made any body hot. */
+bool rows_solve(Rows *rows, Mover *mover, double dt, bool all);
+void rows_bounce(Rows *rows, Mover *mover);
+
+/* Gaps and overlaps (crowd_gap.c). */
+
 /* How far apart the two surfaces are now, at each point. */
-Two contact_separation(const Contact *contact, const Mover *a, const Mover *b);
+Two gap_now(const Contact *contact, const Mover *a, const Mover *b);
 
 /* Before contacts that are new are solved: how fast their points may approach where the bodies are now. */
-void contacts_limit(Contact *contact, int32_t count, const Mover *mover, double dt);
-
-/* Once for each contact of a substep, before it is solved: the impulses of the substep before, and how fast points that are
- * about to touch approach.  Whether any does faster than the threshold, and is to bounce. */
-void contacts_warm_start(Contact *contact, int32_t count, Mover *mover);
-bool contacts_measure(Contact *contact, int32_t count, const Mover *mover, double threshold);
-
-/* One pass.  heat: by mover, the last pass that changed it noticeably; a pass other than the first of a substep goes only
- * to contacts of bodies that the pass before it heated.  Whether this pass heated any. */
-bool contacts_solve(Contact *contact, int32_t count, Mover *mover, double dt, int64_t *heat, int64_t pass, bool first);
+void gap_limit(Contact *contact, int32_t count, const Mover *mover, double dt);
 
 /* At the velocities that were found bodies may turn so fast that gaps close by the second order of it: then they may approach
  * less fast.  Whether that changed anything; the bodies are hot. */
-bool contacts_foresee(Contact *contact, int32_t count, const Mover *mover, double dt, int64_t *heat, int64_t pass);
+bool gap_foresee(Rows *rows, const Mover *mover, const int32_t *active, int32_t active_count, double dt);
 
-/* Take a share of the overlaps out of the positions, and set the limits of the next substep. */
-void contacts_part(Contact *contact, int32_t count, Mover *mover, double dt);
-void contacts_bounce(Contact *contact, int32_t count, Mover *mover);
+/* Take a share of the overlaps out of the positions, set the limits of the next substep, and note which contacts are stale. */
+void gap_close(Rows *rows, Mover *mover, double dt);
 
 #endif

@@ -7,17 +7,6 @@ static const double MORE =
     0.05; /* of the smaller reach: a contact's other end comes with it when it is as near as that */
 static const double FAST =
     0.25; /* of the smaller reach in a substep: a pair as fast as that is followed to its touch */
-static const double TURN = 0.03; /* [rad]: a pair that has turned so far in the frame is looked at again */
-
-static int contact_room(Crowd *crowd, int32_t count) {
-    if (count <= crowd->contact_capacity) return SIM_OK;
-    int32_t capacity = 2 * count + 64;
-    Contact *contact = realloc(crowd->contact, (size_t)capacity * sizeof *contact);
-    if (!contact) return SIM_OUT_OF_MEMORY;
-    crowd->contact = contact;
-    crowd->contact_capacity = capacity;
-    return SIM_OK;
-}
 
 static int near_room(Crowd *crowd, int32_t count) {
     if (count <= crowd->near_capacity) return SIM_OK;
@@ -38,7 +27,8 @@ int touch_create(Crowd *crowd, const World *world) {
     if (!crowd->end || !crowd->end_angle) return SIM_OUT_OF_MEMORY;
     if (range_create(crowd, world) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (sweep_create(&crowd->sweep, world->shape_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
-    return contact_room(crowd, 2 * world->body_count);
+    if (rows_create(&crowd->rows, world->body_count) != SIM_OK) return SIM_OUT_OF_MEMORY;
+    return rows_room(&crowd->rows, 2 * world->body_count);
 }
 
 void touch_destroy(Crowd *crowd) {
@@ -50,7 +40,7 @@ void touch_destroy(Crowd *crowd) {
     free(crowd->last_near);
     sweep_destroy(&crowd->sweep);
     free(crowd->near);
-    free(crowd->contact);
+    rows_destroy(&crowd->rows);
     memory_destroy(&crowd->memory);
 }
 
@@ -72,7 +62,7 @@ static bool came_straight(const Crowd *crowd, const World *world, int32_t body) 
 
 static int consider(Crowd *crowd, World *world, Near near, double dt, double substep, bool *woke) {
     if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
-    if (contact_room(crowd, crowd->contact_count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
+    if (rows_room(&crowd->rows, crowd->rows.count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     double skin = near_skin(world, &near), later = near_closing(crowd, world, &near, dt) + skin;
     double soon = near_closing(crowd, world, &near, substep) + skin;
     bool contact = false;
@@ -152,7 +142,7 @@ int touch_frame(Crowd *crowd, World *world, double dt, double substep) {
     do {
         woke = rest_wake_joined(crowd, world);
         load(crowd, world);
-        crowd->near_count = crowd->contact_count = 0;
+        crowd->near_count = crowd->rows.count = crowd->rows.stale_count = 0;
         for (int32_t i = 0; i < world->body_count; i++) {
             const Body *body = &world->body[i];
             if (body->mode == MODE_FLIGHT || body->mode == MODE_SMOOTH) {
@@ -179,12 +169,8 @@ int touch_frame(Crowd *crowd, World *world, double dt, double substep) {
 
 /* Find the points anew of contacts whose bodies have turned or shifted a good deal since. */
 void touch_refresh(Crowd *crowd, World *world, double left) {
-    for (int32_t i = 0; i < crowd->contact_count; i++) {
-        Contact *c = &crowd->contact[i];
-        const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
-        Vec shifted = vsub(vsub(b->moved, a->moved), c->moved);
-        double turned = b->turned - a->turned - c->turned;
-        if (fabs(turned) < TURN && fabs(shifted.x) + fabs(shifted.y) < c->slack) continue;
+    for (int32_t i = 0; i < crowd->rows.stale_count; i++) {
+        Contact *c = &crowd->rows.contact[crowd->rows.stale[i]];
         Near near = {
             .piece_a = (int32_t)(c->key >> 32), .piece_b = (int32_t)(c->key & 0xffffffffu), .a = c->a, .b = c->b};
         Manifold m;
@@ -192,17 +178,17 @@ void touch_refresh(Crowd *crowd, World *world, double left) {
                       near_closing(crowd, world, &near, left) + c->slack, &m);
         Record old = contact_record(c);
         contact_set_points(crowd, world, c, &m, &old);
-        contacts_limit(c, 1, crowd->mover, crowd->substep);
+        gap_limit(c, 1, crowd->mover, crowd->substep);
     }
 }
 
 /* All pairs of pieces that are contacts or near ones. */
 static int fill_known(Crowd *crowd) {
     Index *known = &crowd->known;
-    int status = index_room(known, crowd->near_count + crowd->contact_count + 1);
+    int status = index_room(known, crowd->near_count + crowd->rows.count + 1);
     if (status != SIM_OK) return status;
     index_clear(known);
-    for (int32_t i = 0; i < crowd->contact_count; i++) index_add(known, crowd->contact[i].key, 0);
+    for (int32_t i = 0; i < crowd->rows.count; i++) index_add(known, crowd->rows.contact[i].key, 0);
     for (int32_t i = 0; i < crowd->near_count; i++)
         index_add(known, pair_key(crowd->near[i].piece_a, crowd->near[i].piece_b), 0);
     return SIM_OK;
@@ -219,7 +205,7 @@ static int add_near(Crowd *crowd, const World *world, int32_t shape_a, int32_t s
             if (index_room(&crowd->known, crowd->known.count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
             if (!index_add(&crowd->known, pair_key(p, q), 0)) continue;
             if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
-            if (contact_room(crowd, crowd->contact_count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
+            if (rows_room(&crowd->rows, crowd->rows.count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
             crowd->near[crowd->near_count++] =
                 (Near){.piece_a = p, .piece_b = q, .a = sa->body, .b = sb->body, .gap = -INFINITY};
         }
@@ -251,11 +237,11 @@ static int follow_strays(Crowd *crowd, const World *world, double left, double d
 }
 
 /* After the passes: the near pairs that may touch in the substep at the velocities found become contacts.  Whether there
- * were any, and whether any is to bounce; they are hot. */
-int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found, bool *bounces) {
+ * were any; they are hot. */
+int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found) {
     int status = follow_strays(crowd, world, left, substep);
     if (status != SIM_OK) return status;
-    int32_t kept = 0, before = crowd->contact_count;
+    int32_t kept = 0, before = crowd->rows.count;
     for (int32_t i = 0; i < crowd->near_count; i++) {
         Near *near = &crowd->near[i];
         if (near_gap(crowd, near) <= near_approach(crowd, near, substep)) {
@@ -265,8 +251,8 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
             bool fast = soon > FAST * reach;
             if (fast ? near_look_along(crowd, world, near, substep, later)
                      : near_look(crowd, world, near, soon, later)) {
-                if (crowd->mover[near->a].inverse_mass > 0) crowd->heat[near->a] = crowd->passes;
-                if (crowd->mover[near->b].inverse_mass > 0) crowd->heat[near->b] = crowd->passes;
+                rows_heat(&crowd->rows, crowd->mover, near->a, true);
+                rows_heat(&crowd->rows, crowd->mover, near->b, true);
                 continue;
             }
         }
@@ -274,12 +260,11 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
         kept++;
     }
     crowd->near_count = kept;
-    *found = crowd->contact_count > before;
+    *found = crowd->rows.count > before;
     if (!*found) return SIM_OK;
-    int32_t more = crowd->contact_count - before;
-    contacts_limit(crowd->contact + before, more, crowd->mover, substep);
-    *bounces = contacts_measure(crowd->contact + before, more, crowd->mover, threshold) || *bounces;
-    contacts_warm_start(crowd->contact + before, more, crowd->mover);
+    gap_limit(crowd->rows.contact + before, crowd->rows.count - before, crowd->mover, substep);
+    rows_measure(&crowd->rows, before, crowd->mover, threshold);
+    rows_warm_start(&crowd->rows, before, crowd->mover);
     return SIM_OK;
 }
 
@@ -289,8 +274,8 @@ static void find_touched(Crowd *crowd, const World *world, double dt) {
     for (int32_t k = 0; k < crowd->active_count; k++) touched[crowd->active[k]] = false;
     for (int32_t i = 0; i < crowd->pivots.count; i++)
         touched[crowd->pivots.pivot[i].a] = touched[crowd->pivots.pivot[i].b] = true;
-    for (int32_t i = 0; i < crowd->contact_count; i++)
-        touched[crowd->contact[i].a] = touched[crowd->contact[i].b] = true;
+    for (int32_t i = 0; i < crowd->rows.count; i++)
+        touched[crowd->rows.ends[i].a] = touched[crowd->rows.ends[i].b] = true;
     for (int32_t i = 0; i < crowd->near_count; i++) {
         const Near *near = &crowd->near[i];
         if (near_gap(crowd, near) <= near_closing(crowd, world, near, dt) + near_skin(world, near))

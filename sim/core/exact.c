@@ -11,6 +11,7 @@
 #define STEPS_A_SECOND 20000.0 /* of the integrator, a simulated second: what turns faster than that is for the crowd */
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
 #define STEPS_OF_PAIR 32.0 /* of a search that cost as much again as looking at a pair at all */
+#define GLANCE 0.125 /* of a pair: what it costs to see that the two do not come near each other */
 #define PAIRS_OF_FEW 1e6 /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
 int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance) {
@@ -96,10 +97,9 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     if (a != 0) to = fmin(to, fmax(ta->touch_time, b != 0 ? tb->touch_time : 0)); /* later ones are asked for again */
     if (to <= from) return;
     if (a != 0 && b != 0) { /* most pairs are too far apart to need a closer look */
-        double ways = motion_way(&ta->motion, from, to) + motion_way(&tb->motion, from, to);
-        double reach = e->world->body[a].reach + e->world->body[b].reach + ways;
-        Vec apart = vsub(motion_position(&ta->motion, from), motion_position(&tb->motion, from));
-        if (vdot(apart, apart) > reach * reach) return;
+        double reach = e->world->body[a].reach + e->world->body[b].reach + e->slack.gap;
+        e->spent += GLANCE;
+        if (motion_nearest(&ta->motion, &tb->motion, from, to) > reach) return;
     }
     int32_t closed = closed_features(e, a, b);
     Mover ma = {a, &ta->motion}, mb = {b, &tb->motion};
