@@ -1,4 +1,5 @@
 #include "exact.h"
+#include "project.h"
 #include "stopwatch.h"
 
 #include <stdlib.h>
@@ -190,7 +191,7 @@ int island_advance(Exact *e, int32_t index, double from) {
     e->smooth.relax = island->relax;
     if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
     double left = 0;
-    if (status == SIM_OK) status = smooth_project(&e->smooth, &e->part, &left);
+    if (status == SIM_OK) status = project(&e->smooth, &e->part, &left);
     e->steps = fmax(0, e->steps - STEPS_A_SECOND * (from - e->steps_time)) + 1;
     e->steps_time = from;
     island->jammed = left > JAMMED * e->slack.speed || e->steps > STEPS_A_SECOND;
@@ -205,6 +206,7 @@ int island_advance(Exact *e, int32_t index, double from) {
         State state = motion_state(&track->motion, from);
         track->motion = island->jammed ? motion_in_flight(&state, from, e->world->gravity) : e->motion[k];
         if (island->jammed) track->motion.end = from;
+        track->step = island->step;
         e->changed[island->member[k]] = true;
     }
     e->world->profile.smooth_steps += 1;

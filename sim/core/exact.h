@@ -29,6 +29,7 @@ typedef struct Track {
     int32_t partner;
     double bucket, bucket_time; /* how many events it had lately */
     int32_t repeats;            /* and at this very moment */
+    double step;                /* that its last smooth motion would have taken next [s]; 0 before any */
 } Track;
 
 /* Pairs of shapes, as keys. */

@@ -1,10 +1,12 @@
 /* What happens to the bodies about an event. */
+#include "project.h"
 #include <stdlib.h>
 #include <string.h>
 
 #include "exact.h"
 #include "stopwatch.h"
 
+#define FIRST_STEP 0.05 /* tried by the integrator [s], of bodies that have taken none */
 #define MOST_CONTACTS 10       /* of a group in motion: beyond that the crowd is cheaper */
 #define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
 #define BOUNCE 0.1             /* bounces lower than this part of the tolerance are not followed */
@@ -153,7 +155,7 @@ static int settle_low_lifts(Exact *e) {
     if (!any) return SIM_OK;
     e->smooth.relax = 0;
     int status = smooth_prepare(&e->smooth, g);
-    return status == SIM_OK ? smooth_project_velocities(&e->smooth, g) : status;
+    return status == SIM_OK ? project_velocities(&e->smooth, g) : status;
 }
 
 static int resolve(Exact *e, double time) {
@@ -223,7 +225,7 @@ static Island *new_island(Exact *e, int32_t *index) {
     Island *island = &e->island[*index];
     island->in_use = true;
     island->member_count = island->contact_count = 0;
-    island->step = 0.05;
+    island->step = FIRST_STEP;
     island->relax = 0;
     return island;
 }
@@ -303,6 +305,7 @@ static int send_off(Exact *e, int32_t root, double time) {
         e->changed[body] = true;
         if (rest && held && e->world->body[body].mode != MODE_REST) status = change_tell_rest(e, body, time, state.p);
         e->world->body[body].mode = rest ? MODE_REST : held ? MODE_SMOOTH : MODE_FLIGHT;
+        if (island && track->step > 0) island->step = fmin(island->step, track->step);
         if (island && status == SIM_OK) status = island_add(island, &body, NULL);
     }
     e->world->profile.rests += rest && held;

@@ -7,15 +7,14 @@
 #define RELAX 1e-10           /* makes redundant rows solvable; refinement takes its effect away again */
 #define RELAX_MORE 1e-7    /* the same where rows that nearly repeat each other keep a step from converging */
 #define PATIENCE 3         /* tries of a step before that is taken to be so */
-#define RELAX_PROJECTION 1e-6 /* the same for projection, which is iterated anyway */
-#define FARTHEST 20.0         /* times the error that is corrected: a correction goes no farther */
 #define DECISIVE 1e-9         /* how far past its limit a force is when its event is taken, of the forces about */
 #define UNSURE 0.02       /* forces that redundant contacts may share out otherwise: ask again after this time [s] */
+#define ROOT_TIME 1e-13  /* how exactly the end of a mode is found [s], and as a part of the time */
 #define LONGEST 2.0       /* a step [s]: within it, the ends of contacts' modes are looked for at the stages */
 #define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
 
 int smooth_create(Smooth *s, const World *world, double tolerance, Slack slack) {
-    *s = (Smooth){.capacity = world->body_count, .tolerance = tolerance, .slack = slack};
+    *s = (Smooth){.tolerance = tolerance, .slack = slack};
     size_t n = 6 * (size_t)world->body_count;
     double *block = malloc((ALL_STAGES + 4) * n * sizeof *block);
     if (!block) return SIM_OUT_OF_MEMORY;
@@ -29,67 +28,16 @@ int smooth_create(Smooth *s, const World *world, double tolerance, Slack slack) 
 
 void smooth_destroy(Smooth *s) {
     free(s->start);
-    free(s->active);
-    free(s->matrix);
+    active_destroy(&s->active);
     *s = (Smooth){0};
 }
 
-/* ---------------------------------------------------------------- the rows that hold */
-
-static bool share_member(const Row *i, const Row *j) {
-    return (i->a >= 0 && (i->a == j->a || i->a == j->b)) || (i->b >= 0 && (i->b == j->a || i->b == j->b));
-}
-
-static int reserve(Smooth *s, int32_t rows) {
-    if (rows <= s->row_capacity) return SIM_OK;
-    size_t n = 2 * (size_t)rows;
-    free(s->active);
-    free(s->matrix);
-    s->row_capacity = 0;
-    s->active = malloc(3 * n * sizeof *s->active);
-    s->matrix = malloc((n * n + 3 * n) * sizeof *s->matrix);
-    if (!s->active || !s->matrix) return SIM_OUT_OF_MEMORY;
-    s->rank = s->active + n;
-    s->first = s->active + 2 * n;
-    s->force = s->matrix + n * n;
-    s->residual = s->force + n;
-    s->softness = s->force + 2 * n;
-    s->row_capacity = (int32_t)n;
-    return SIM_OK;
-}
+/* ---------------------------------------------------------------- accelerations */
 
 int smooth_prepare(Smooth *s, System *system) {
     int status = system_place(system);
-    if (status == SIM_OK) status = reserve(s, system->row_count);
-    if (status != SIM_OK) return status;
     if (s->relax == 0) s->relax = RELAX;
-    for (int32_t i = 0; i < system->row_count; i++) s->rank[i] = -2; /* does not hold */
-    for (int32_t i = 0; i < 2 * system->joint_count; i++) s->rank[i] = -1;
-    for (int32_t k = 0; k < system->contact_count; k++) {
-        const Contact *c = &system->contact[k];
-        int32_t normal = 2 * (system->joint_count + k);
-        if (c->active) s->rank[normal] = -1;
-        if (c->active && c->slide == 0 && c->friction > 0) s->rank[normal + 1] = -1;
-    }
-    /* Breadth first over rows that share a body (Cuthill and McKee 1969): chains come out banded. */
-    s->active_count = 0;
-    for (int32_t seed = 0; seed < system->row_count; seed++) {
-        if (s->rank[seed] != -1) continue;
-        int32_t head = s->active_count;
-        s->rank[seed] = s->active_count;
-        s->active[s->active_count++] = seed;
-        for (; head < s->active_count; head++)
-            for (int32_t j = 0; j < system->row_count; j++) {
-                if (s->rank[j] != -1 || !share_member(&system->row[s->active[head]], &system->row[j])) continue;
-                s->rank[j] = s->active_count;
-                s->active[s->active_count++] = j;
-            }
-    }
-    for (int32_t i = 0; i < s->active_count; i++) s->softness[i] = 1;
-    for (int32_t i = 0; i < s->active_count; i++)
-        for (s->first[i] = 0; s->first[i] < i; s->first[i]++)
-            if (share_member(&system->row[s->active[i]], &system->row[s->active[s->first[i]]])) break;
-    return SIM_OK;
+    return status == SIM_OK ? active_choose(&s->active, system) : status;
 }
 
 /* How much softer than the others each row may be in a step: where sticking contacts share a load in more than one way,
@@ -98,58 +46,16 @@ static void find_softness(Smooth *s, const System *system) {
     int32_t joints = 2 * system->joint_count;
     double most = 0;
     for (int32_t k = 0; k < system->contact_count; k++) most = fmax(most, system->contact[k].force);
-    for (int32_t i = 0; i < s->active_count; i++) {
-        int32_t row = s->active[i];
+    for (int32_t i = 0; i < s->active.count; i++) {
+        int32_t row = s->active.row[i];
         bool is_friction = row >= joints && (row & 1) == 1 && most > 0;
-        s->softness[i] = is_friction ? most / fmax(system->contact[(row - joints) / 2].force, 1e-4 * most) : 1;
+        s->active.softness[i] = is_friction ? most / fmax(system->contact[(row - joints) / 2].force, 1e-4 * most) : 1;
     }
 }
 
-/* LU without pivoting within the profile: L below with its diagonal, U above with ones on its diagonal. */
-static void factor(Smooth *s, const System *system, double relax) {
-    int32_t n = s->active_count;
-    double *A = s->matrix;
-    for (int32_t i = 0; i < n; i++) {
-        const Row *ri = &system->row[s->active[i]];
-        for (int32_t j = s->first[i]; j < i; j++) {
-            const Row *rj = &system->row[s->active[j]];
-            double lower = row_coupling(system, ri, rj), upper = row_coupling(system, rj, ri);
-            int32_t k = s->first[i] > s->first[j] ? s->first[i] : s->first[j];
-            for (; k < j; k++) {
-                lower -= A[i * n + k] * A[k * n + j];
-                upper -= A[j * n + k] * A[k * n + i];
-            }
-            A[i * n + j] = lower;
-            A[j * n + i] = upper / A[j * n + j];
-        }
-        double diagonal = row_coupling(system, ri, ri);
-        diagonal += relax * fabs(diagonal) * s->softness[i];
-        for (int32_t k = s->first[i]; k < i; k++) diagonal -= A[i * n + k] * A[k * n + i];
-        A[i * n + i] = diagonal;
-    }
-}
-
-/* residual := the forces that take it away. */
-static void substitute(Smooth *s) {
-    int32_t n = s->active_count;
-    const double *A = s->matrix;
-    double *x = s->residual;
-    for (int32_t i = 0; i < n; i++) {
-        for (int32_t k = s->first[i]; k < i; k++) x[i] -= A[i * n + k] * x[k];
-        x[i] /= A[i * n + i];
-    }
-    for (int32_t i = n - 1; i >= 0; i--)
-        for (int32_t k = s->first[i]; k < i; k++) x[k] -= A[k * n + i] * x[i];
-}
-
-/* ---------------------------------------------------------------- accelerations */
-
-static void add_force(const System *system, double *acceleration, int32_t i, const double *f, double force) {
+static void push(double *acceleration, int32_t i, const double *weight, double force) {
     if (i < 0) return;
-    const Body *body = &system->world->body[system->member[i]];
-    acceleration[3 * i] += force * body->inverse_mass * f[0];
-    acceleration[3 * i + 1] += force * body->inverse_mass * f[1];
-    acceleration[3 * i + 2] += force * body->inverse_moment * f[2];
+    for (int c = 0; c < 3; c++) acceleration[3 * i + c] += force * weight[c];
 }
 
 static double row_of(const Row *row, const double *acceleration) {
@@ -172,153 +78,35 @@ static int accelerate(Smooth *s, System *system, double *out) {
         out[3 * i + 2] = 0;
     }
     s->evals += 1;
-    s->rows += s->active_count;
-    memset(s->force, 0, (size_t)s->active_count * sizeof *s->force);
-    factor(s, system, s->relax);
+    Active *active = &s->active;
+    s->rows += active->count;
+    memset(active->force, 0, (size_t)active->count * sizeof *active->force);
+    active_factor(active, system, s->relax);
     for (int pass = 0; pass < 2; pass++) { /* the second pass takes away what relaxing left */
-        for (int32_t i = 0; i < s->active_count; i++) s->residual[i] = -row_of(&system->row[s->active[i]], out);
-        substitute(s);
-        for (int32_t i = 0; i < s->active_count; i++) {
-            const Row *row = &system->row[s->active[i]];
-            s->force[i] += s->residual[i];
-            add_force(system, out, row->a, row->fa, s->residual[i]);
-            add_force(system, out, row->b, row->fb, s->residual[i]);
+        for (int32_t i = 0; i < active->count; i++) active->unknown[i] = -row_of(&system->row[active->row[i]], out);
+        active_solve(active);
+        for (int32_t i = 0; i < active->count; i++) {
+            const Row *row = &system->row[active->row[i]];
+            active->force[i] += active->unknown[i];
+            push(out, row->a, active->weight[i], active->unknown[i]);
+            push(out, row->b, active->weight[i] + 3, active->unknown[i]);
         }
     }
     for (int32_t k = 0; k < system->contact_count; k++) {
         Contact *c = &system->contact[k];
         int32_t normal = 2 * (system->joint_count + k);
-        c->force = s->rank[normal] >= 0 ? s->force[s->rank[normal]] : 0;
-        c->along_force = s->rank[normal + 1] >= 0 ? s->force[s->rank[normal + 1]] : -c->slide * c->friction * c->force;
+        c->force = active->rank[normal] >= 0 ? active->force[active->rank[normal]] : 0;
+        c->along_force = active->rank[normal + 1] >= 0 ? active->force[active->rank[normal + 1]]
+                                                       : -c->slide * c->friction * c->force;
     }
     return SIM_OK;
-}
-
-static void load(System *system, const double *y) {
-    for (int32_t i = 0; i < system->count; i++, y += 6)
-        system->state[i] = (State){vec(y[0], y[1]), y[2], vec(y[3], y[4]), y[5]};
-}
-
-static void store(const System *system, double *y) {
-    for (int32_t i = 0; i < system->count; i++, y += 6) {
-        const State *s = &system->state[i];
-        y[0] = s->p.x, y[1] = s->p.y, y[2] = s->angle, y[3] = s->v.x, y[4] = s->v.y, y[5] = s->spin;
-    }
-}
-
-/* ---------------------------------------------------------------- projection */
-
-static const Placed BACKGROUND = {{{0, 0}, 1, 0}, {0, 0}, 0};
-
-static double position_error(const System *system, int32_t row) {
-    const World *world = system->world;
-    bool is_joint = row < 2 * system->joint_count;
-    int32_t k = is_joint ? row / 2 : (row - 2 * system->joint_count) / 2;
-    const Contact *c = is_joint ? NULL : &system->contact[k];
-    const Joint *joint = is_joint ? &world->joint[system->joint[k]] : NULL;
-    int32_t a = is_joint ? joint->a : c->feature.body_a, b = is_joint ? joint->b : c->feature.body_b;
-    const Placed *pa = system->place_of[a] >= 0 ? &system->placed[system->place_of[a]] : &BACKGROUND;
-    const Placed *pb = system->place_of[b] >= 0 ? &system->placed[system->place_of[b]] : &BACKGROUND;
-    if (is_joint) {
-        Vec apart = vsub(place(pa->at, joint->local_a), place(pb->at, joint->local_b));
-        return row & 1 ? apart.y : apart.x;
-    }
-    return row & 1 ? 0 : feature_gap(&c->feature, pa, pb).gap - c->hold;
-}
-
-static void move(const System *system, int32_t i, const double *f, double by) {
-    if (i < 0) return;
-    const Body *body = &system->world->body[system->member[i]];
-    State *state = &system->state[i];
-    state->p = vmad(state->p, by * body->inverse_mass, vec(f[0], f[1]));
-    state->angle += by * body->inverse_moment * f[2];
-}
-
-/* Rows that nearly say the same, and differ by rounding, would be met by running far away: a correction that is much larger than
- * what it corrects is not made. */
-static void keep_if_small(System *system, const double *before, double worst) {
-    bool small = true;
-    for (int32_t i = 0; i < system->count; i++) {
-        const State *s = &system->state[i];
-        const double *b = before + 6 * i;
-        double reach = system->world->body[system->member[i]].reach, most = FARTHEST * worst;
-        small = small && vlength(vsub(s->p, vec(b[0], b[1]))) + reach * fabs(s->angle - b[2]) <= most;
-        small = small && vlength(vsub(s->v, vec(b[3], b[4]))) + reach * fabs(s->spin - b[5]) <= most;
-    }
-    if (!small) load(system, before);
-}
-
-/* Place the rows, with forces along the rows themselves: what is moved onto the constraints by the least motion gains no
- * energy, as it would along the force of a sliding contact. */
-static int place_plain(System *system) {
-    int status = system_place(system);
-    for (int32_t i = 0; i < system->row_count && status == SIM_OK; i++) {
-        Row *row = &system->row[i];
-        memcpy(row->fa, row->ja, sizeof row->fa);
-        memcpy(row->fb, row->jb, sizeof row->fb);
-    }
-    return status;
-}
-
-/* Newton's method on the positions: the first pass leaves the square of the error. */
-static int project_positions(Smooth *s, System *system) {
-    store(system, s->start);
-    double first = 0;
-    for (int pass = 0; pass < 3; pass++) {
-        int status = place_plain(system);
-        if (status != SIM_OK) return status;
-        double worst = 0;
-        for (int32_t i = 0; i < s->active_count; i++) {
-            s->residual[i] = -position_error(system, s->active[i]);
-            worst = fmax(worst, fabs(s->residual[i]));
-        }
-        if (pass == 0) first = worst;
-        if (worst <= s->slack.root) break;
-        factor(s, system, RELAX_PROJECTION);
-        substitute(s);
-        for (int32_t i = 0; i < s->active_count; i++) {
-            const Row *row = &system->row[s->active[i]];
-            move(system, row->a, row->fa, s->residual[i]);
-            move(system, row->b, row->fb, s->residual[i]);
-        }
-    }
-    keep_if_small(system, s->start, first);
-    return SIM_OK;
-}
-
-int smooth_project_velocities(Smooth *s, System *system) {
-    int status = place_plain(system);
-    if (status != SIM_OK) return status;
-    store(system, s->start);
-    double first = 0;
-    factor(s, system, RELAX_PROJECTION);
-    for (int pass = 0; pass < 3; pass++) {
-        for (int32_t i = 0; i < s->active_count; i++) {
-            s->residual[i] = -row_speed(&system->row[s->active[i]], system->state);
-            if (pass == 0) first = fmax(first, fabs(s->residual[i]));
-        }
-        substitute(s);
-        for (int32_t i = 0; i < s->active_count; i++) row_push(system, &system->row[s->active[i]], s->residual[i]);
-    }
-    keep_if_small(system, s->start, first);
-    return SIM_OK;
-}
-
-int smooth_project(Smooth *s, System *system, double *left) {
-    *left = 0;
-    if (s->active_count == 0) return SIM_OK;
-    int status = project_positions(s, system);
-    if (status == SIM_OK) status = smooth_project_velocities(s, system);
-    for (int32_t i = 0; i < s->active_count; i++)
-        *left = fmax(*left, fabs(row_speed(&system->row[s->active[i]], system->state)));
-    return status;
 }
 
 /* ---------------------------------------------------------------- the step */
 
 /* dy/dt at y. */
 static int derive(Smooth *s, System *system, const double *y, double *k) {
-    load(system, y);
+    system_load(system, y);
     int status = accelerate(s, system, s->acceleration);
     for (int32_t i = 0; i < system->count; i++)
         for (int c = 0; c < 3; c++) {
@@ -382,9 +170,8 @@ static void dense(const Smooth *s, int32_t c, double h, double *out) {
 /* How far a contact is from where its mode ends, in each of three ways: its force would pull; it slips, or its slip comes
  * to rest; its point leaves the side. Negative past it; forces are those last found. */
 static void mode_ends(const Smooth *s, const System *system, const Contact *c, double scale, double ends[3]) {
-    int32_t a = system->place_of[c->feature.body_a], b = system->place_of[c->feature.body_b];
-    Gap g =
-        feature_gap(&c->feature, a >= 0 ? &system->placed[a] : &BACKGROUND, b >= 0 ? &system->placed[b] : &BACKGROUND);
+    const Feature *f = &c->feature;
+    Gap g = feature_gap(f, system_placed(system, f->body_a), system_placed(system, f->body_b));
     ends[0] = c->force / scale + DECISIVE;
     ends[1] = INFINITY;
     if (c->slide != 0)
@@ -427,36 +214,50 @@ static double margin_at(Smooth *s, System *system, const Motion *motion, double 
     return modes_margin(s, system, scale);
 }
 
-/* The first moment of the step past which the modes do not hold, searched on its dense output; INFINITY if there is none. */
-static double find_end_of_modes(Smooth *s, System *system, const Motion *motion, double from, double to, double scale) {
+/* Where a margin that is `high` >= 0 before and `low` < 0 after becomes negative: inverse quadratic interpolation where
+ * that is safe, else bisection (Chandrupatla 1997). Returns the far end of the last bracket. */
+static double find_root_of_margin(Smooth *s, System *system, const Motion *motion, double before, double high,
+                                  double after, double low, double scale) {
+    double a = after, fa = low, b = before, fb = high, c = b, fc = fb, part = 0.5;
+    for (int i = 0; i < 100; i++) {
+        double least = ROOT_TIME * (1 + fabs(after)) / fabs(b - a);
+        if (least > 0.5) break;
+        double t = a + fmin(fmax(part, least), 1 - least) * (b - a), m = margin_at(s, system, motion, t, scale);
+        if ((m < 0) == (fa < 0)) {
+            c = a, fc = fa;
+        } else {
+            c = b, fc = fb, b = a, fb = fa;
+        }
+        a = t, fa = m;
+        after = fa < 0 ? a : b;
+        double x = (a - b) / (c - b), y = (fa - fb) / (fc - fb);
+        part = 0.5;
+        if (y * y < x && (1 - y) * (1 - y) < 1 - x)
+            part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
+    }
+    return after;
+}
+
+/* The first moment of the step past which the modes do not hold, searched on its dense output from `sound` on, up to
+ * which they seem to; INFINITY if there is none. */
+static double find_end_of_modes(Smooth *s, System *system, const Motion *motion, double sound, double scale) {
     const int parts = 8;
-    double before = from, after = to, high = margin_at(s, system, motion, from, scale), low = 0, none = INFINITY;
+    double from = motion->start, to = motion->end, none = INFINITY;
+    double before = sound, high = margin_at(s, system, motion, sound, scale);
+    if (high < 0 && sound > from) before = from, high = margin_at(s, system, motion, from, scale);
     if (high < 0) { /* redundant contacts share out forces in another way than when the step was made */
         find_unsure(s, system, scale);
         none = to = fmin(to, from + UNSURE);
         high = modes_margin(s, system, scale);
     }
-    bool found = false;
-    for (int i = 1; i <= parts && !found; i++) {
-        double t = from + (to - from) * i / parts, m = margin_at(s, system, motion, t, scale);
-        found = m < 0;
-        if (found) {
-            after = t, low = m;
-        } else {
-            before = t, high = m;
-        }
-    }
-    if (!found) return none;
-    for (int i = 0; i < 100 && after - before > 1e-13 * (1 + fabs(after)); i++) { /* Illinois, kept off the ends */
-        double part = fmin(fmax(high / (high - low), 0.02), 0.98), t = before + (after - before) * part;
+    for (int i = 1; i <= parts; i++) {
+        double t = from + (to - from) * i / parts;
+        if (t <= before) continue;
         double m = margin_at(s, system, motion, t, scale);
-        if (m < 0) {
-            after = t, low = m, high *= 0.5;
-        } else {
-            before = t, high = m, low *= 0.5;
-        }
+        if (m < 0) return find_root_of_margin(s, system, motion, before, high, t, m, scale);
+        before = t, high = m;
     }
-    return after;
+    return none;
 }
 
 static double force_scale(const System *system) {
@@ -467,23 +268,23 @@ static double force_scale(const System *system) {
 
 int smooth_step(Smooth *s, System *system, double from, double *h, Motion *motion, bool *ended) {
     int32_t n = 6 * system->count;
-    store(system, s->start);
+    system_store(system, s->start);
     find_softness(s, system);
     int status = derive(s, system, s->start, s->k[0]);
-    double scale = force_scale(system), margin = INFINITY, step;
+    double scale = force_scale(system), broken = INFINITY, step; /* the part of it where the modes may end */
     bool unsure = find_unsure(s, system, scale);
     if (unsure) *h = fmin(*h, UNSURE);
     for (int tries = 0;; tries++) {
         step = fmin(*h, LONGEST);
-        margin = INFINITY;
+        broken = INFINITY;
         for (int i = 1; i < STAGES && status == SIM_OK; i++) {
             status = stage(s, system, i, step);
-            margin = fmin(margin, modes_margin(s, system, scale));
+            if (modes_margin(s, system, scale) < 0) broken = fmin(broken, DOP853_C[i]);
         }
         if (status != SIM_OK) return status;
         double error = step_error(s, system, step);
         double factor = !isfinite(error) ? 0.2 : error > 0 ? 0.9 / sqrt(sqrt(sqrt(error))) : 8;
-        *h = step * fmin(fmax(factor, 0.2), 8);
+        *h = step * fmin(fmax(factor, 0.2), tries > 0 ? 1 : 8);
         if (error <= 1 || step < 1e-12) break;
         if (tries == PATIENCE) s->relax = RELAX_MORE;
     }
@@ -493,7 +294,7 @@ int smooth_step(Smooth *s, System *system, double from, double *h, Motion *motio
         s->end[c] = s->start[c] + step * sum;
     }
     status = derive(s, system, s->end, s->k[STAGES]);
-    margin = fmin(margin, modes_margin(s, system, scale));
+    if (modes_margin(s, system, scale) < 0) broken = fmin(broken, 1);
     for (int i = STAGES + 1; i < ALL_STAGES && status == SIM_OK; i++) status = stage(s, system, i, step);
     for (int32_t i = 0; i < system->count; i++) {
         Motion *m = &motion[i];
@@ -505,8 +306,11 @@ int smooth_step(Smooth *s, System *system, double from, double *h, Motion *motio
         m->speed = motion_bound(m, from, from + step).speed;
     }
     *ended = unsure;
-    if (margin < 0) {
-        double stop = find_end_of_modes(s, system, motion, from, from + step, scale);
+    if (broken <= 1) {
+        double sound = 0;
+        for (int i = 1; i < STAGES; i++)
+            if (DOP853_C[i] < broken) sound = fmax(sound, DOP853_C[i]);
+        double stop = find_end_of_modes(s, system, motion, from + step * sound, scale);
         *ended = unsure || stop <= from + step;
         if (stop <= from + step)
             for (int32_t i = 0; i < system->count; i++) motion[i].end = stop;

@@ -60,9 +60,21 @@ void system_find_joints(System *s) {
     }
 }
 
+void system_load(System *s, const double *y) {
+    for (int32_t i = 0; i < s->count; i++, y += 6) s->state[i] = (State){vec(y[0], y[1]), y[2], vec(y[3], y[4]), y[5]};
+}
+
+void system_store(const System *s, double *y) {
+    for (int32_t i = 0; i < s->count; i++, y += 6) {
+        const State *state = &s->state[i];
+        y[0] = state->p.x, y[1] = state->p.y, y[2] = state->angle;
+        y[3] = state->v.x, y[4] = state->v.y, y[5] = state->spin;
+    }
+}
+
 static const Placed BACKGROUND = {{{0, 0}, 1, 0}, {0, 0}, 0};
 
-static const Placed *placed_of(const System *s, int32_t body) {
+const Placed *system_placed(const System *s, int32_t body) {
     return s->place_of[body] >= 0 ? &s->placed[s->place_of[body]] : &BACKGROUND;
 }
 
@@ -80,7 +92,7 @@ static Row make_row(int32_t a, int32_t b, Vec direction, Vec ra, Vec rb) {
 
 static void place_joint(System *s, int32_t k) {
     const Joint *joint = &s->world->joint[s->joint[k]];
-    const Placed *a = placed_of(s, joint->a), *b = placed_of(s, joint->b);
+    const Placed *a = system_placed(s, joint->a), *b = system_placed(s, joint->b);
     Vec ra = turn(a->at, joint->local_a), rb = turn(b->at, joint->local_b);
     int32_t ia = s->place_of[joint->a], ib = s->place_of[joint->b];
     joint_row(s, k)[0] = make_row(ia, ib, vec(1, 0), ra, rb);
@@ -89,7 +101,7 @@ static void place_joint(System *s, int32_t k) {
 
 static void place_contact(System *s, int32_t k) {
     const Contact *c = &s->contact[k];
-    const Placed *a = placed_of(s, c->feature.body_a), *b = placed_of(s, c->feature.body_b);
+    const Placed *a = system_placed(s, c->feature.body_a), *b = system_placed(s, c->feature.body_b);
     Gap g = feature_gap(&c->feature, a, b);
     Vec ra = vsub(g.point, a->at.p), rb = vsub(g.point, b->at.p);
     int32_t ia = s->place_of[c->feature.body_a], ib = s->place_of[c->feature.body_b];
@@ -120,7 +132,7 @@ int system_place(System *s) {
 void system_find_bias(System *s) {
     for (int32_t k = 0; k < s->joint_count; k++) { /* d^2/dt^2 of (xa + ra) - (xb + rb): centripetal */
         const Joint *joint = &s->world->joint[s->joint[k]];
-        const Placed *a = placed_of(s, joint->a), *b = placed_of(s, joint->b);
+        const Placed *a = system_placed(s, joint->a), *b = system_placed(s, joint->b);
         Vec bias = vsub(vscale(turn(b->at, joint->local_b), b->spin * b->spin),
                         vscale(turn(a->at, joint->local_a), a->spin * a->spin));
         joint_row(s, k)[0].bias = bias.x;
@@ -129,13 +141,13 @@ void system_find_bias(System *s) {
     for (int32_t k = 0; k < s->contact_count; k++) {
         const Feature *f = &s->contact[k].feature;
         Row *normal = contact_row(s, k);
-        feature_bias(f, placed_of(s, f->body_a), placed_of(s, f->body_b), &normal[0].bias, &normal[1].bias);
+        feature_bias(f, system_placed(s, f->body_a), system_placed(s, f->body_b), &normal[0].bias, &normal[1].bias);
     }
 }
 
 Vec contact_point(const System *s, int32_t k) {
     const Feature *f = &s->contact[k].feature;
-    return feature_gap(f, placed_of(s, f->body_a), placed_of(s, f->body_b)).point;
+    return feature_gap(f, system_placed(s, f->body_a), system_placed(s, f->body_b)).point;
 }
 
 double row_speed(const Row *row, const State *state) {

@@ -49,9 +49,16 @@ void system_add_body(System *system, int32_t body, const State *state);
 int system_add_contact(System *system, const Contact *contact);
 void system_find_joints(System *system); /* all those that hold a member */
 
+/* The states as 6 numbers a member: position, angle, velocity, spin. */
+void system_load(System *system, const double *numbers);
+void system_store(const System *system, double *numbers);
+
 /* Work out placed and the rows from the states. */
 int system_place(System *system);
 void system_find_bias(System *system);
+
+const Placed *system_placed(const System *system,
+                            int32_t body); /* of a body of the world; the background is no member */
 
 double row_speed(const Row *row, const State *state);                  /* J v */
 void row_push(const System *system, const Row *row, double impulse);   /* v += M^-1 F' impulse */
