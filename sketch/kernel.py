@@ -27,6 +27,7 @@ __all__ = [
     "joined",
     "measure",
     "off_outline",
+    "place",
 ]
 
 Array = NDArray[np.float64]
@@ -46,6 +47,7 @@ _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _l
 _off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
+_placed = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer, _int, _int)(("ink_placed", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 
 
@@ -229,6 +231,18 @@ def course(points: Array, pen: float) -> Array | None:
 def off_outline(strokes: Strokes, index: int, outline: Array) -> float:
     """Mean squared distance of a stroke from a closed outline, (n, 2) [pixels]."""
     return float(_off_outline(strokes.samples.ctypes.data, index, outline.ctypes.data, len(outline)))
+
+
+def place(ink: Array, corners: Array, sides: int, rectangle: bool = False) -> Array | None:
+    """A convex polygon, (sides, 2), or with no sides a circle's centre and radius, (3,), moved to where it differs
+    least in area from the convex hull of ink, (n, 2); None where it has no such place (see core/place.c)."""
+    n = len(ink)
+    points = np.empty((3 * n + 2, 2))
+    points[:n] = ink
+    out = np.array(corners, dtype=np.float64)
+    at = points.ctypes.data
+    found = n > 1 and _placed(at, n, at + 16 * n, out.ctypes.data, sides, rectangle)
+    return out if found else None
 
 
 def is_simple(outline: Array) -> bool:

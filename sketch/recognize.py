@@ -26,9 +26,10 @@ from sketch.cutting import things_in
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
-from sketch.kernel import depth, off_outline
+from sketch.kernel import depth
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page
+from sketch.placing import Placed, placed
 from sketch.proposals import Proposals, Proposed, proposing
 from sketch.reading import Reading, scored
 from sketch.scoring import Fitted
@@ -97,7 +98,7 @@ class Recognizer:
         self._context = Context()
         self._alone: Solved = {}
         self._together: Solved = {}
-        self._errors: dict[Fitted, float] = {}
+        self._places: dict[Fitted, Placed] = {}
         self._strokes: dict[int, Stroke] = {}
         self._pieces: dict[int, list[int]] = {}  # of each stroke the things drawn in it: mostly one
         self._count = 0
@@ -149,8 +150,8 @@ class Recognizer:
         number = {i: s for s, of in enumerate(pieces) for i in of}
         fits = [candidates[k] for k in chosen]
         page = self._proposals.page
-        self._errors = {c: self._errors[c] if c in self._errors else _error(page, c) for c in fits}
-        readings = _readings(candidates, gains, chosen, number, self._errors)
+        self._places = {c: self._places.get(c) or placed(page, c) for c in fits}
+        readings = _readings(candidates, gains, chosen, number, self._places)
         read = {i for k in chosen for i in candidates[k].pieces}
         for i, stroke in enumerate(sketch.strokes):
             if not read.issuperset(pieces[i]):
@@ -253,12 +254,12 @@ def _readings(
     gains: list[float],
     chosen: list[int],
     number: dict[int, int],
-    errors: dict[Fitted, float],
+    places: dict[Fitted, Placed],
 ) -> list[Reading]:
     """The chosen candidates, each with the other readings of the same ink as probabilities, in order of
     drawing.
 
-    number: of each piece the stroke.  errors: of each chosen candidate's fit [pixels].
+    number: of each piece the stroke.  places: of each chosen candidate.
     """
     same: dict[tuple[int, ...], list[int]] = {candidates[k].pieces: [] for k in chosen}
     for k, c in enumerate(candidates):
@@ -281,12 +282,12 @@ def _readings(
                 kind,
                 strokes,
                 score,
-                c.outline,
+                places[c].outline,
                 others,
                 gains[k],
                 -max(rivals.values()),
                 c.rough,
-                errors[c],
+                places[c].error,
             )
         )
     return sorted(readings, key=lambda r: r.strokes)
@@ -297,24 +298,3 @@ def _meaning(c: Fitted) -> str | int:
     if c.kind in ("rectangle", "polygon", "ellipse", "free"):
         return min(len(c.outline), MANY)
     return c.kind
-
-
-def _error(page: Page, c: Fitted) -> float:
-    """The standard error of a fit's corners, or of its centre and radius [pixels].
-
-    The root mean square distance of the ink, times the square root of parameters over independent observations.
-    """
-    if not (c.closed or c.kind == "bar"):
-        return 0.0
-    pieces = [page.pieces[i] for i in c.pieces]
-    length = sum(p.length for p in pieces)
-    if c.kind == "circle":
-        middle = c.outline.mean(axis=0)
-        radius = math.dist(c.outline[0], middle)
-        off = [np.hypot(*(page.strokes.samples[p.stroke] - middle).T) - radius for p in pieces]
-        square = sum(p.length * float(np.mean(d * d)) for p, d in zip(pieces, off, strict=True)) / length
-    else:
-        around = c.outline if c.closed else np.concatenate([c.outline, c.outline[-2:0:-1]])  # forth and back
-        square = sum(p.length * off_outline(page.strokes, p.stroke, around) for p in pieces) / length
-    parameters = {"circle": 3, "ellipse": 5, "rectangle": 5}.get(c.kind, 2 * len(c.outline))
-    return math.sqrt(square * parameters / max(sum(p.observations for p in pieces), parameters))

@@ -30,7 +30,6 @@ typedef struct {
     double x, y, dx, dy; /* a point of the line, and its unit direction in the order of the samples */
     double bow;          /* how far the run's middle stands off its ends, to the left of the direction */
     double cost;         /* squared distances from the bowed line, and the price of the bow */
-    double spread2;      /* squared distances from the straight line */
 } Line;
 
 /* Fill the sums, and the costs for each of `ways` stiffnesses, (tremor / usual bow)²: what a bow costs.
@@ -58,6 +57,7 @@ void corner(const Line *a, const Line *b, const double end[2], const double begi
 double sample_parts(const double *xy, const int32_t *part_end, int parts, double *x, double *y, int n);
 
 INK_API int32_t ink_is_simple(const double *v, int32_t n);
+INK_API double ink_depth(double x, double y, const double *outline, int32_t n);
 
 double segment_distance2(double px, double py, const double a[2], const double b[2]);
 

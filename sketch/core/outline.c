@@ -56,7 +56,6 @@ static const double BOW = 0.0195;   /* usual bow of a straight side, as a share 
 static const double STIFFNESS[2] = {0.02, 0.6};
 static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
 static const double REFLEX = 1.2;  /* likewise one that turns inward */
-static const double OUTER = 1.0;   /* standard deviations of a side's ink from its line to the body's edge */
 static const double INWARD = 4.0;  /* nats that a corner which turns inward is rarer */
 static const double FLATNESS = 0.096;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
@@ -111,18 +110,12 @@ static double fit_round(const double *x, const double *y, const double *factor, 
 static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double stiffness,
                           const double stretch[2], double cap2, double *vertices, double *oddness, double *perimeter) {
     Line side[SIDES], chord[SIDES];
-    double drawn[2 * SIDES], turning = 0;
-    for (int i = 0; i < r->n; i++) turning += r->x[i] * r->y[i + 1] - r->y[i] * r->x[i + 1];
-    double outward = turning > 0 ? 1 : -1; /* to the right of the samples' order, in a frame with y up */
+    double drawn[2 * SIDES];
     for (int q = 0; q < k; q++) {
         chord[q] = side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q], stiffness);
         double off = 2.0 / 3 * side[q].bow; /* the drawn corners are the ends of the bows */
         chord[q].x -= off * side[q].dy;
         chord[q].y += off * side[q].dx;
-        /* the body reaches to the outer edge of its ink, beyond the line through the middle */
-        double spread = OUTER * sqrt(side[q].spread2 / (cut[q + 1] - cut[q])) * outward;
-        side[q].x += spread * side[q].dy;
-        side[q].y -= spread * side[q].dx;
     }
     for (int q = 0; q < k; q++) { /* vertex q is where side q begins */
         int before = (q + k - 1) % k;

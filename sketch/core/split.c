@@ -133,7 +133,7 @@ Line runs_line(const Runs *r, int first, int count, double stiffness) {
     }
     least = least > 0 ? least : 0;
     double length2 = fmax(12 * most * w, 1e-12);
-    Line line = {mx, my, dx, dy, 0, least, least};
+    Line line = {mx, my, dx, dy, 0, least};
     if (count < 4) return line;
     double c = 0.5 * (first + z), k = 0.5 * (z - first); /* t = (i - c) / k */
     double mean2 = (k + 1) / (3 * k);                    /* mean of t² over the run */

@@ -79,13 +79,17 @@ def test_times_are_not_looked_at() -> None:
 
 
 def test_geometry_of_the_scene() -> None:
-    """x = px / ppm, y = -py / ppm, the longer side of the canvas 10 m."""
+    """x = px / ppm, y = -py / ppm, the longer side of the canvas 10 m; a body reaches to the edge of its ink."""
     rng = np.random.default_rng(3)
     shapes = [outline(box(640, 360, 320, 160, 0.2), NEAT, rng), circle((1000, 200), 64, NEAT, rng)]
     bodies = read(*shapes, outline(ngon(3, 300, 300, 90), NEAT, rng)).scene.bodies
     rectangle, ball, triangle = bodies
     assert rectangle.position == pytest.approx((5.0, -360 / 128), abs=0.03)
-    assert rectangle.shape.size == pytest.approx((2.5, 1.25), rel=0.04)
+    turn = np.array([[math.cos(0.2), -math.sin(0.2)], [math.sin(0.2), math.cos(0.2)]])
+    ink = np.ptp(np.concatenate(shapes[0]) @ turn, axis=0) / 128
+    for meant, found, reached in zip((2.5, 1.25), rectangle.shape.size, ink, strict=True):
+        assert meant < 1.005 * found < 1.01 * reached
+        assert reached < 1.05 * meant  # so that the bounds say something
     assert rectangle.angle == pytest.approx(-0.2, abs=0.02)
     assert ball.position == pytest.approx((1000 / 128, -200 / 128), abs=0.03)
     assert ball.shape.radius == pytest.approx(0.5, rel=0.03)

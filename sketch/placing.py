@@ -1,0 +1,69 @@
+"""Where a body lies: the outline of its kind that differs least in area from what was drawn, and how sure that is."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.kernel import SIDES, off_outline, place
+from sketch.pieces import Page
+from sketch.scoring import Fitted
+
+__all__ = ["Placed", "placed"]
+
+Array = NDArray[np.float64]
+
+
+class Placed(NamedTuple):
+    """A reading's place on the page.
+
+    Attributes:
+        outline: [pixels], as in `sketch.reading.Reading`.
+        error: standard error of a body's corners, or of its centre and radius [pixels]; 0 for marks.
+    """
+
+    outline: Array
+    error: float
+
+
+def placed(page: Page, fitted: Fitted) -> Placed:
+    """The place of a reading: a fit says what was meant, by the middle of the ink; a body reaches to its edge.
+
+    An outline of any course, or one that turns inward, is where its ink is.
+    """
+    outline, kind = fitted.outline, fitted.kind
+    sides = 0 if kind == "circle" else len(outline)
+    if kind == "circle" or (kind in ("rectangle", "polygon") and sides <= SIDES):
+        ink = np.concatenate([page.pieces[i].points for i in fitted.pieces])
+        if kind == "circle":
+            middle = outline.mean(axis=0)
+            ring = outline - middle
+            radius = math.hypot(*ring[0].tolist())
+            found = place(ink, np.array([*middle, radius]), 0)
+            if found is not None:
+                outline = found[:2] + ring * (found[2] / radius)
+        else:
+            found = place(ink, outline, sides, kind == "rectangle")
+            outline = outline if found is None else found
+    return Placed(outline, _error(page, fitted))
+
+
+def _error(page: Page, c: Fitted) -> float:
+    """The root mean square distance of the ink, times the square root of parameters over independent observations."""
+    if not (c.closed or c.kind == "bar"):
+        return 0.0
+    pieces = [page.pieces[i] for i in c.pieces]
+    length = sum(p.length for p in pieces)
+    if c.kind == "circle":
+        middle = c.outline.mean(axis=0)
+        radius = math.dist(c.outline[0], middle)
+        off = [np.hypot(*(page.strokes.samples[p.stroke] - middle).T) - radius for p in pieces]
+        square = sum(p.length * float(np.mean(d * d)) for p, d in zip(pieces, off, strict=True)) / length
+    else:
+        around = c.outline if c.closed else np.concatenate([c.outline, c.outline[-2:0:-1]])  # forth and back
+        square = sum(p.length * off_outline(page.strokes, p.stroke, around) for p in pieces) / length
+    parameters = {"circle": 3, "ellipse": 5, "rectangle": 5}.get(c.kind, 2 * len(c.outline))
+    return math.sqrt(square * parameters / max(sum(p.observations for p in pieces), parameters))
