@@ -89,9 +89,19 @@ static double coupling(const Row *i, const Row *j, const double *weight) {
     return sum;
 }
 
+/* Whether no contact slides against friction: then F = J, and the matrix is symmetric. */
+static bool is_symmetric(const System *system) {
+    for (int32_t k = 0; k < system->contact_count; k++) {
+        const Contact *c = &system->contact[k];
+        if (c->active && c->slide != 0 && c->friction > 0) return false;
+    }
+    return true;
+}
+
 /* LU without pivoting within the profile. */
 void active_factor(Active *active, const System *system, double relax) {
     int32_t n = active->count;
+    bool symmetric = is_symmetric(system);
     for (int32_t i = 0; i < n; i++) {
         const Row *ri = &system->row[active->row[i]];
         double *weight = active->weight[i];
@@ -101,12 +111,11 @@ void active_factor(Active *active, const System *system, double relax) {
         for (int32_t j = active->first[i]; j < i; j++) {
             const Row *rj = &system->row[active->row[j]];
             const double *lj = active->lower + (size_t)j * (size_t)n, *uj = active->upper + (size_t)j * (size_t)n;
-            double lower = coupling(ri, rj, active->weight[j]), upper = coupling(rj, ri, weight);
-            int32_t k = active->first[i] > active->first[j] ? active->first[i] : active->first[j];
-            for (; k < j; k++) {
-                lower -= li[k] * uj[k];
-                upper -= lj[k] * ui[k];
-            }
+            int32_t from = active->first[i] > active->first[j] ? active->first[i] : active->first[j];
+            double lower = coupling(ri, rj, active->weight[j]);
+            for (int32_t k = from; k < j; k++) lower -= li[k] * uj[k];
+            double upper = symmetric ? lower : coupling(rj, ri, weight);
+            for (int32_t k = from; !symmetric && k < j; k++) upper -= lj[k] * ui[k];
             li[j] = lower;
             ui[j] = upper * active->inverse[j];
         }
