@@ -152,8 +152,8 @@ def dominoes(page: Page) -> None:
 @machine
 def funnel(page: Page) -> None:
     """Many bodies fall through a funnel into a bin."""
-    page.beam((200, 280), (525, 450), 36, anchored=True)
-    page.beam((1080, 280), (755, 450), 36, anchored=True)
+    page.beam((200, 235), (505, 395), 36, anchored=True)
+    page.beam((1080, 235), (775, 395), 36, anchored=True)
     page.rectangle((640, 692), (800, 36), anchored=True)
     page.rectangle((258, 606), (32, 134), anchored=True)
     page.rectangle((1022, 606), (32, 134), anchored=True)

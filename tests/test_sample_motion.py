@@ -55,8 +55,8 @@ def test_what_holds_for_every_machine(name: str) -> None:
         if body.anchored:
             assert np.all(run.positions[:, k] == run.positions[0, k])
             assert np.all(run.angles[:, k] == run.angles[0, k])
-        else:  # the drawing is where it starts, but for overlaps
-            assert math.dist(run.positions[0, k], body.position) < 8 * PIXEL
+        else:  # the drawing is where it starts, but for overlaps: up to 3 px a storey, in towers of five
+            assert math.dist(run.positions[0, k], body.position) < 15 * PIXEL
     scale = max(1.0, float(np.ptp(run.energy[:, 1])))
     assert np.max(run.energy[:, 2]) - run.energy[0, 2] < 0.01 * scale, "energy came from nowhere"
 
