@@ -13,7 +13,6 @@ from sketch.kernel import cuts
 from sketch.marks import read_arrows, read_bar, read_cross
 from sketch.outlines import read_outline
 from sketch.pieces import Page, Piece
-from sketch.scoring import unread
 
 __all__ = ["things_in"]
 
@@ -51,14 +50,14 @@ def things_in(points: Array) -> list[Array]:
     count = sum(p.observations for p in things)
     scale = sum(p.scale * p.observations for p in things) / count
     coarse = whole.observations * max(math.log(whole.scale / scale), 0.0)
-    most = unread(replace(whole, scale=min(scale, whole.scale), observations=count))
+    most = replace(whole, scale=min(scale, whole.scale), observations=count).unread
     for meant in _meant(page, whole):
         most = min(most, max(count / whole.observations, 1.0) * meant + coarse)
     said = CUT * (len(kinds) - 1) + sum(least)
     for p, bound in zip(things, least, strict=True):
         if said >= most:
             return [points]
-        said += min((unread(p), *_meant(page, p))) - bound
+        said += min((p.unread, *_meant(page, p))) - bound
     return parts if said < most else [points]
 
 

@@ -76,7 +76,7 @@ class ClosedFit(NamedTuple):
     """Readings of a closed chain of ink, in its normal frame where not said otherwise (see core/outline.c).
 
     Attributes:
-        mean: the frame's origin [pixels].  back: (2, 2), pixel = mean + back @ normal.
+        mean: the frame's origin [pixels].  to, back: (2, 2), normal = to @ (pixel - mean) and its inverse.
         ink, gap: lengths of the ink and of the gaps.
         conic: a, b, c, d, e of x² + y² = a(x² - y²) + 2bxy + cx + dy + e.
         ellipse_cost: nats to say the ink, given it.
@@ -87,6 +87,7 @@ class ClosedFit(NamedTuple):
     """
 
     mean: Array
+    to: Array
     back: Array
     ink: float
     gap: float
@@ -169,6 +170,7 @@ def fit_closed(
     scalars = out[:corners].tolist()
     return ClosedFit(
         mean=out[0:2],
+        to=out[2:6].reshape(2, 2),
         back=out[6:10].reshape(2, 2),
         ink=scalars[length],
         gap=scalars[length + 1],

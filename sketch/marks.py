@@ -12,7 +12,7 @@ import numpy as np
 from sketch.kernel import ArrowFit, ArrowGroup, course, fit_arrows, off_outline
 from sketch.outlines import RETRACE
 from sketch.pieces import Array, Page, Piece
-from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of, unread
+from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
 
 __all__ = ["line_of_any_course", "read_arrows", "read_bar", "read_cross", "read_line", "with_strays"]
 
@@ -59,7 +59,7 @@ def read_line(piece: Piece) -> Fitted | None:
     if piece.gap < 0.3 * piece.length:
         return None
     line = line_of_any_course(piece)
-    return None if line is None else Fitted("bar", (piece.index,), unread(piece) + ANY_COURSE, line)
+    return None if line is None else Fitted("bar", (piece.index,), piece.unread + ANY_COURSE, line)
 
 
 def line_of_any_course(piece: Piece) -> Array | None:

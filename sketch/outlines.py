@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import Any
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline
 from sketch.loose import Chain
 from sketch.pieces import Page
-from sketch.scoring import PARAMETER, Fitted, misfit, unread
+from sketch.scoring import PARAMETER, Fitted, misfit
 
 __all__ = ["LEAST_AXIS", "gone_over", "read_outline"]
 
@@ -34,6 +34,7 @@ GAP = 4.0  # nats for each observation that an outline lacks
 CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
 LEAST_AXIS = 0.002  # of the page: thinner outlines are judged as if they were this thick
 
+_SAID = [2 * k * CORNER - USUAL.get(k, 0.0) for k in range(MOST_SIDES + 1)]  # nats to say k corners
 _ANGLES = np.linspace(0, 2 * math.pi, 24, endpoint=False)
 _RING = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
 
@@ -52,30 +53,31 @@ def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fi
         parts.append(over)
         shared = SHARED
     fit = fit_closed(
-        parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(unread(pieces[i]) for i in names)
+        parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(pieces[i].unread for i in names)
     )
     gaps = GAP * count * fit.gap / fit.ink + shared
-    b = fit.back
-    scale = math.sqrt(abs(float(b[0, 0] * b[1, 1] - b[0, 1] * b[1, 0])))
-    said = [2 * k * CORNER - USUAL.get(k, 0.0) for k in range(MOST_SIDES + 1)]
-    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + said[k])
-    out = _round(fit, names, gaps, scale)
+    (p, q), (r, s) = fit.back.tolist()
+    scale, narrow = math.sqrt(abs(p * s - q * r)), min(math.hypot(p, r), math.hypot(q, s))
+    fitted = partial(Fitted, pieces=names, scale=scale, narrow=narrow, gap=fit.gap / fit.ink)
+    out = _round(fit, fitted, gaps)
+    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + _SAID[k])
     if math.isfinite(fit.cost[sides]):
-        cost = fit.cost[sides] + said[sides] + gaps
-        out.append(Fitted("polygon", names, cost, fit.vertices(sides), scale, rough=fit.cost[sides]))
+        cost = fit.cost[sides] + _SAID[sides] + gaps
+        out.append(fitted("polygon", cost=cost, outline=fit.vertices(sides), rough=fit.cost[sides]))
     box = _rectangle(fit) if math.isfinite(fit.cost[4]) else None
     if box is not None:
         corners, extra = box
         off = fit.residual[4]
         cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + BOX + gaps
-        out.append(Fitted("rectangle", names, cost, corners, scale))
-    bent = FREEFORM + gaps + min(misfit(fit.residual[k], count) + ARC * k for k in range(3, MOST_SIDES + 1))
-    if bent < min(f.cost for f in out):
-        course = _course(parts)
-        if is_simple(course):
-            out.append(Fitted("free", names, bent, course, scale))
-    narrow = min(math.hypot(b[0, 0], b[1, 0]), math.hypot(b[0, 1], b[1, 1]))
-    return [replace(f, gap=fit.gap / fit.ink, narrow=narrow) for f in out]
+        out.append(fitted("rectangle", cost=cost, outline=corners))
+    least = min(f.cost for f in out)
+    if FREEFORM + gaps + 3 * ARC < least:  # else it is not said in fewer however well it fits
+        arcs = range(3, MOST_SIDES + 1)
+        bent = FREEFORM + gaps + min(misfit(fit.residual[k], count) + ARC * k for k in arcs)
+        course = _course(parts) if bent < least else None
+        if course is not None and is_simple(course):
+            out.append(fitted("free", cost=bent, outline=course))
+    return out
 
 
 def _course(parts: list[Array]) -> Array:
@@ -103,10 +105,13 @@ def gone_over(page: Page, fitted: Fitted, index: int) -> float:
     return PARAMETER + RETRACE * piece.observations + misfit(off / scale**2, piece.observations)
 
 
-def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float, scale: float) -> list[Fitted]:
-    """The circle and the ellipse; one hardly longer than wide is a circle too."""
+def _round(fit: ClosedFit, fitted: Callable[..., Fitted], gaps: float) -> list[Fitted]:
+    """The circle and the ellipse; one hardly longer than wide is a circle too.
+
+    fitted: makes a reading of what all readings of the outline have in common.
+    """
     x, y, r = fit.circle
-    circle = Fitted("circle", names, fit.circle_cost + ROUND + gaps, np.array([x, y]) + r * _RING, scale)
+    circle = fitted("circle", cost=fit.circle_cost + ROUND + gaps, outline=np.array([x, y]) + r * _RING)
     a, b, c, d, e = fit.conic.tolist()
     if a * a + b * b > 0.5:  # in this frame whatever is round is nearly a circle
         return [circle]
@@ -133,8 +138,8 @@ def _round(fit: ClosedFit, names: tuple[int, ...], gaps: float, scale: float) ->
     cost = fit.ellipse_cost + ROUND + gaps
     if cost + 0.5 * (longer / UNROUND) ** 2 < circle.cost:
         ring = middle + math.sqrt(area) * _RING
-        circle = Fitted("circle", names, cost + 0.5 * (longer / UNROUND) ** 2, ring, scale)
-    return [circle, Fitted("ellipse", names, cost + ELLIPSE, middle + _RING @ axes.T, scale)]
+        circle = fitted("circle", cost=cost + 0.5 * (longer / UNROUND) ** 2, outline=ring)
+    return [circle, fitted("ellipse", cost=cost + ELLIPSE, outline=middle + _RING @ axes.T)]
 
 
 def _rectangle(fit: ClosedFit) -> tuple[Array, float] | None:
@@ -160,9 +165,8 @@ def _rectangle(fit: ClosedFit) -> tuple[Array, float] | None:
     for k in range(4):  # corner k is where side k - 1 meets side k
         across, level = (k, k - 1) if along[k - 1] else (k - 1, k)
         box.append(complex(middles[across].real, middles[level].imag) * turn)
-    to = np.linalg.inv(fit.back)
-    z = _in_frame(to, box)
-    off = _in_frame(to, [c - b for c, b in zip(corners, box, strict=True)])
+    z = _in_frame(fit.to, box)
+    off = _in_frame(fit.to, [c - b for c, b in zip(corners, box, strict=True)])
     extra = 0.0
     for k in range(4):  # the mean over a side of a squared distance that is linear along it
         edge = z[(k + 1) % 4] - z[k]
@@ -174,6 +178,6 @@ def _rectangle(fit: ClosedFit) -> tuple[Array, float] | None:
     return np.array([[b.real, b.imag] for b in box]), extra
 
 
-def _in_frame(to: NDArray[np.floating[Any]], points: list[complex]) -> list[complex]:
+def _in_frame(to: Array, points: list[complex]) -> list[complex]:
     (a, b), (c, d) = to.tolist()
     return [complex(a * p.real + b * p.imag, c * p.real + d * p.imag) for p in points]

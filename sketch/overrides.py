@@ -14,7 +14,7 @@ from sketch.loose import Chain
 from sketch.marks import line_of_any_course, read_arrows, read_bar, read_cross
 from sketch.outlines import read_outline
 from sketch.pieces import Page, Piece
-from sketch.scoring import Fitted, unread
+from sketch.scoring import Fitted
 
 __all__ = ["KINDS", "Overrides", "forced_reading", "normal_overrides"]
 
@@ -78,7 +78,7 @@ def _arrow(page: Page, names: tuple[int, ...]) -> Fitted | None:
 def _line(piece: Piece) -> np.ndarray:
     """An open line as it was drawn: as a polyline, or of any course, or straight between its ends."""
     bar = read_bar(piece)
-    if bar is not None and bar.cost < unread(piece):
+    if bar is not None and bar.cost < piece.unread:
         return bar.outline
     course = line_of_any_course(piece)
     return piece.line(1) if course is None else course

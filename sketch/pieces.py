@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from sketch.ink import Sketch
 from sketch.kernel import joined, measure
 from sketch.loose import Chain, End, LooseEnds
+from sketch.scoring import unread
 
 __all__ = ["Looked", "Page", "Piece", "page_of"]
 
@@ -25,7 +27,7 @@ Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
     """A stroke, or a part of one, with what every reading asks of it.
 
@@ -65,6 +67,11 @@ class Piece:
     def straight(self) -> float:
         """Root mean square distance from a straight line, as a share of its length."""
         return math.sqrt(self.residual[1]) / self.length
+
+    @cached_property
+    def unread(self) -> float:
+        """Nats to say its ink freely."""
+        return unread(self)
 
     def line(self, k: int) -> Array:
         """Its best polyline of k segments [pixels], (k + 1, 2)."""

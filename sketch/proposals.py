@@ -21,7 +21,7 @@ from sketch.loose import End
 from sketch.marks import read_arrows, read_bar, read_cross, read_line, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
 from sketch.pieces import Looked, Page, Piece
-from sketch.scoring import Fitted, unread
+from sketch.scoring import Fitted
 
 __all__ = ["Box", "Proposals", "Proposed", "proposing"]
 
@@ -126,7 +126,7 @@ class Proposals:
                     del p.fits[key]
                     self._stale.add(i)
         for i in sorted(again.union(new)):
-            self.free[i] = unread(self.page.pieces[i])
+            self.free[i] = self.page.pieces[i].unread
             self._alone[i] = self._read_alone(self.page.pieces[i])
         for i in sorted(again.union(new)):
             ends = set() if self._alone[i].complete else self.page.ends.loosen(i)
@@ -159,8 +159,8 @@ class Proposals:
         outlines = read_outline(self.page, [(p.index, False)])
         best = min(outlines, key=lambda f: f.cost)
         loop = best.gap < 0.04 and best.narrow > 0.2 * p.extent
-        complete = best.gap < 0.1 and (loop or best.cost < 0.6 * unread(p))
-        return Alone(outlines, complete, complete and best.cost < PLAIN * unread(p))
+        complete = best.gap < 0.1 and (loop or best.cost < 0.6 * p.unread)
+        return Alone(outlines, complete, complete and best.cost < PLAIN * p.unread)
 
     def _propose(self, p: Piece, known: Fits) -> Proposed:
         """Every reading of every group that a piece leads."""

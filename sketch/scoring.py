@@ -11,11 +11,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.pieces import Piece
+if TYPE_CHECKING:
+    from sketch.pieces import Piece
 
 __all__ = ["Fitted", "misfit", "misfit_of", "unread"]
 
@@ -60,7 +62,8 @@ class Fitted:
 
 
 def unread(piece: Piece) -> float:
-    """Nats to say a piece's ink freely: point by point, or as the polyline that says it in fewest."""
+    """Nats to say a piece's ink freely: point by point, or as the polyline that says it in fewest. `Piece.unread`
+    keeps them."""
     best = FREE * piece.observations
     for k in range(1, len(piece.residual)):
         said = 2 * (k + 1) * PARAMETER

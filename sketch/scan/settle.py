@@ -18,7 +18,7 @@ from sketch.context import Context
 from sketch.proposals import Proposals, proposing
 from sketch.scan.graph import Ink
 from sketch.scan.ways import Way
-from sketch.scoring import Fitted, unread
+from sketch.scoring import Fitted
 from sketch.search import best_packing
 
 __all__ = ["settle"]
@@ -49,7 +49,7 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         stretches = ink[p.stroke]
         scale.update((name, min(p.scale, scale.get(name, np.inf))) for name in stretches)
         if p.stroke < len(likeliest):
-            rate = unread(p) / max(sum(map(len, stretches.values())), 1)
+            rate = p.unread / max(sum(map(len, stretches.values())), 1)
             free.update((name, rate * len(points)) for name, points in stretches.items())
     some = {name: points[:: len(points) // SAMPLES + 1] for names in ink for name, points in names.items()}
     candidates: list[Fitted] = []
@@ -59,7 +59,7 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         if not all(page.apart(i, c.pieces) for i in c.pieces):
             continue
         names: Ink = {name: points for i in c.pieces for name, points in ink[i].items()}
-        own = sum(unread(page.pieces[i]) for i in c.pieces)
+        own = sum(page.pieces[i].unread for i in c.pieces)
         strain = sum(ways[page.pieces[i].stroke].strain for i in c.pieces)
         gain = (1 - c.cost / own) * sum(free.get(name, 0.0) for name in names) - STRAIN * strain
         if gain > 0 and c.kind != "cross":
