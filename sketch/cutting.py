@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -51,9 +52,11 @@ def things_in(points: Array) -> list[Array]:
     scale = sum(p.scale * p.observations for p in things) / count
     coarse = whole.observations * max(math.log(whole.scale / scale), 0.0)
     most = replace(whole, scale=min(scale, whole.scale), observations=count).unread
+    said = CUT * (len(kinds) - 1) + sum(least)  # at least
     for meant in _meant(page, whole):
         most = min(most, max(count / whole.observations, 1.0) * meant + coarse)
-    said = CUT * (len(kinds) - 1) + sum(least)
+        if said >= most:
+            return [points]
     for p, bound in zip(things, least, strict=True):
         if said >= most:
             return [points]
@@ -61,10 +64,12 @@ def things_in(points: Array) -> list[Array]:
     return parts if said < most else [points]
 
 
-def _meant(page: Page, p: Piece) -> list[float]:
+def _meant(page: Page, p: Piece) -> Iterator[float]:
     """The nats to say a piece by itself as each thing that has a meaning."""
-    found = [read_bar(p), read_cross(page, (p.index,))]
+    found = [read_bar(p)]
     if p.gap < OPEN * p.length:
         found += read_outline(page, [(p.index, False)])
+    yield from (f.cost for f in found if f is not None)
+    found = [read_cross(page, (p.index,))]
     found += read_arrows(page, [group for group in arrow_groups(page, p) if group[0] == (p.index,)])
-    return [f.cost for f in found if f is not None]
+    yield from (f.cost for f in found if f is not None)

@@ -120,8 +120,8 @@ def _heads(page: Page, shaft: Piece, tip: Point) -> list[int]:
         x0, y0, x1, y1 = q.box
         if max(x - x0, y - y0, x1 - x, y1 - y) >= span or q is shaft or q.extent > 2 * shaft.length:
             continue
-        d = np.hypot(q.points[:, 0] - x, q.points[:, 1] - y)
-        closest = float(d.min())
-        if closest < reach and float(d.max()) < span and page.apart(q.index, (shaft.index,)):
+        apart = np.abs(q.complex - complex(x, y)).tolist()
+        closest = min(apart)
+        if closest < reach and max(apart) < span and page.apart(q.index, (shaft.index,)):
             found.append((closest, q.index))
     return [j for _, j in sorted(found)[:HEADS]]

@@ -42,7 +42,10 @@ def read_bar(piece: Piece) -> Fitted | None:
         return None
     best, segments = math.inf, 1
     for k in range(1, MOST_BENDS + 1):
-        cost = misfit_of(piece, piece.residual[k]) + 2 * (k + 1) * PARAMETER + BEND * (k - 1)
+        said = 2 * (k + 1) * PARAMETER
+        if said + BEND * (k - 1) > best:
+            break
+        cost = misfit_of(piece, piece.residual[k]) + said + BEND * (k - 1)
         if cost > best:
             continue
         cost += SHARP * _turning(piece.vertices[k][: k + 1])
@@ -73,34 +76,46 @@ def _turning(v: list[Vertex]) -> float:
     return sum(1 - (b * a.conjugate()).real / max(abs(a) * abs(b), 1e-12) for a, b in pairwise(sides))
 
 
-def read_cross(page: Page, names: tuple[int, ...]) -> Fitted | None:
-    """An X: two bars that cross near their middles; where the pen went on, further ink joins them."""
+def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fitted | None:
+    """An X: two bars that cross near their middles; where the pen went on, further ink joins them.
+
+    None where they do not, or where it takes more than `most` [nats].
+    """
     parts = [page.pieces[i] for i in names]
     length = sum(p.length for p in parts)
     count = sum(p.observations for p in parts)
     best = None
     for bends in ((3,), (4,), (5,)) if len(parts) == 1 else ((1, 1), (1, 2), (2, 1), (1, 3), (3, 1), (2, 2)):
+        off = sum(misfit_of(p, p.residual[n]) for p, n in zip(parts, bends, strict=True))
+        if 6 * PARAMETER + off > most:
+            continue
         sides = [
-            (part, k, a, b)
+            (part, k, a, b, math.dist(a, b))
             for part, (p, n) in enumerate(zip(parts, bends, strict=True))
             for k, (a, b) in enumerate(pairwise(p.vertices[n][: n + 1]))
         ]
-        off = sum(misfit_of(p, p.residual[n]) for p, n in zip(parts, bends, strict=True))
-        for (part, k, a, b), (other, m, c, d) in combinations(sides, 2):
+        for (part, k, a, b, long), (other, m, c, d, wide) in combinations(sides, 2):
             if part == other and (m < k + 2 or len(parts) == 2):
                 continue
-            joining = 1 - (math.dist(a, b) + math.dist(c, d)) / length
+            joining = 1 - (long + wide) / length
             if joining > 0.5:
                 continue
             # a third of the ink is what one side takes to join the bars
             extra = PARAMETER + FREE * count * max(joining - 0.35, 0.0) if len(sides) > 2 else 0.0
-            found = _cross(a, b, c, d, names, off + extra)
-            if found is not None and (best is None or found.cost < best.cost):
-                best = found
-    return best
+            odd = _crossing(a, b, c, d)
+            if odd is None:
+                continue
+            cost = 6 * PARAMETER + (off + extra) + odd[0] + odd[1]
+            if cost <= most and (best is None or cost < best[0]):
+                best, most = (cost, a, b, c, d), cost
+    if best is None:
+        return None
+    cost, a, b, c, d = best
+    return Fitted("cross", names, cost, np.array([a, b, c, d]), figure=np.array([a, b, d, a, c, b, c, d, c]))
 
 
-def _cross(a: Vertex, b: Vertex, c: Vertex, d: Vertex, names: tuple[int, ...], off: float) -> Fitted | None:
+def _crossing(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> tuple[float, float] | None:
+    """Nats of how far from their middles two bars cross, and of how unlike they are; None for no X."""
     ux, uy, vx, vy, wx, wy = b[0] - a[0], b[1] - a[1], d[0] - c[0], d[1] - c[1], c[0] - a[0], c[1] - a[1]
     p, q, det = math.hypot(ux, uy), math.hypot(vx, vy), ux * vy - uy * vx
     if abs(det) < 0.3 * p * q or max(p, q) > 3 * min(p, q):  # at less than 17 degrees, or unlike
@@ -108,10 +123,7 @@ def _cross(a: Vertex, b: Vertex, c: Vertex, d: Vertex, names: tuple[int, ...], o
     t, s = (wx * vy - wy * vx) / det, (wx * uy - wy * ux) / det
     if not (0.1 < t < 0.9 and 0.1 < s < 0.9):
         return None
-    centred = ((t - 0.5) ** 2 + (s - 0.5) ** 2) / (2 * 0.12**2)
-    alike = 0.5 * (math.log(p / q) / 0.3) ** 2
-    cost = 6 * PARAMETER + off + centred + alike
-    return Fitted("cross", names, cost, np.array([a, b, c, d]), figure=np.array([a, b, d, a, c, b, c, d, c]))
+    return ((t - 0.5) ** 2 + (s - 0.5) ** 2) / (2 * 0.12**2), 0.5 * (math.log(p / q) / 0.3) ** 2
 
 
 def read_arrows(

@@ -73,6 +73,11 @@ class Piece:
         """Nats to say its ink freely."""
         return unread(self)
 
+    @cached_property
+    def complex(self) -> NDArray[np.complex128]:
+        """Its points as complex numbers, x + iy."""
+        return self.points.view(np.complex128)[:, 0]
+
     def line(self, k: int) -> Array:
         """Its best polyline of k segments [pixels], (k + 1, 2)."""
         return np.array(self.vertices[k][: k + 1])

@@ -187,12 +187,17 @@ class Proposals:
         out += _kept(read_bar(p)) + _kept(read_line(p))
         if not alone.plain:
             for names in crosses(page, p):
-                for cross in fitted((names, "cross"), lambda n=names: _kept(read_cross(page, n))):  # type: ignore[misc]
+                most = self._said(names) + HOPELESS
+                for cross in fitted((names, "cross"), lambda n=names, m=most: _kept(read_cross(page, n, m))):  # type: ignore[misc]
                     out += [cross, *with_strays(page, cross, self.free)]
             out += self._arrows(p, known, fits)
-        said = [(c, sum(self.free[i] for i in c.pieces) - c.cost) for c in out]
+        said = [(c, self._said(c.pieces) - c.cost) for c in out]
         likely = [(c, gain) for c, gain in said if gain > -HOPELESS]
         return proposing([c for c, _ in likely], [gain for _, gain in likely], looked, fits)
+
+    def _said(self, names: tuple[int, ...]) -> float:
+        """Nats to say pieces freely."""
+        return sum(map(self.free.__getitem__, names))
 
     def _arrows(self, p: Piece, known: Fits, fits: Fits) -> list[Fitted]:
         """Arrows of which a piece is the shaft, the best of each group."""
@@ -201,7 +206,7 @@ class Proposals:
             (names, (tail, toward)): (names, tail, toward) for names, tail, toward in arrow_groups(page, p)
         }
         new = {key: group for key, group in groups.items() if key not in known}
-        most = [HOPELESS + sum(self.free[i] for i in names) for names, _ in new]
+        most = [HOPELESS + self._said(names) for names, _ in new]
         fresh = dict(zip(new, map(_kept, read_arrows(page, list(new.values()), most)), strict=True))
         best: dict[tuple[int, ...], Fitted] = {}
         for key in groups:

@@ -79,6 +79,8 @@ def _solve(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
     for g in sorted(range(len(groups)), key=lambda g: -gains[g]):
         best_of.setdefault(groups[g], g)
     cluster = list(best_of.values())
+    if len(cluster) == 1:
+        return cluster
     bit = {i: 1 << k for k, i in enumerate(sorted({i for group in best_of for i in group}))}
     if len(bit) > MOST_PIECES:
         return _greedy(cluster, groups, gains)
