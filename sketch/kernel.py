@@ -105,15 +105,16 @@ class ClosedFit(NamedTuple):
 
 
 class ArrowFit(NamedTuple):
-    """An arrow on some strokes: points [pixels] and angles [rad] (see core/arrow.c).
+    """An arrow on some strokes: its tip and its barbs' ends [pixels] (see core/arrow.c).
 
-    lengths, ink: of the shaft and of each barb, and of the ink nearest to each [pixels].
+    lengths, ink: of the shaft and of each barb, and of the ink nearest to each [pixels].  unlike: nats of how
+    unlike a head its head is.
     bare: mean squared distance of the arrow from the ink [pixels²].  off: of each stroke from the arrow.
     """
 
     head: Array
     lengths: list[float]
-    angles: list[float]
+    unlike: float
     ink: list[float]
     bare: float
     off: list[float]
@@ -184,14 +185,17 @@ def fit_closed(
     )
 
 
-def fit_arrows(strokes: Strokes, groups: Sequence[ArrowGroup]) -> list[ArrowFit | None]:
-    """Fit an arrow to each of some groups of strokes; None where they have no head."""
+def fit_arrows(
+    strokes: Strokes, groups: Sequence[ArrowGroup], most: Sequence[float]
+) -> list[ArrowFit | None]:
+    """Fit an arrow to each of some groups of strokes; None where they have no head, or one that is more than
+    `most` nats unlike one."""
     if not groups:
         return []
     names, ends = [i for g in groups for i in g[0]], accumulate(len(g[0]) for g in groups)
     which = np.array([*names, *ends], dtype=np.int32)
-    given = np.array([(*tail, *toward) for _, tail, toward in groups])
-    width = 15 + max(len(g[0]) for g in groups)
+    given = np.array([(*tail, *toward, m) for (_, tail, toward), m in zip(groups, most, strict=True)])
+    width = 16 + max(len(g[0]) for g in groups)
     out = np.empty((len(groups), width))
     at = which.ctypes.data
     _arrows(
@@ -204,12 +208,13 @@ def fit_arrows(strokes: Strokes, groups: Sequence[ArrowGroup]) -> list[ArrowFit 
         width,
         out.ctypes.data,
     )
-    return [
-        ArrowFit(row[:6].reshape(3, 2), v[6:9], v[9:11], v[11:14], v[14], v[15 : 15 + len(g[0])])
-        if v[6] > 0
-        else None
-        for row, v, g in zip(out, out.tolist(), groups, strict=True)
-    ]
+    fits: list[ArrowFit | None] = [None] * len(groups)
+    for k in np.flatnonzero(out[:, 6]).tolist():
+        v = out[k].tolist()
+        fits[k] = ArrowFit(
+            out[k, :6].reshape(3, 2), v[6:9], v[11], v[12:15], v[15], v[16 : 16 + len(groups[k][0])]
+        )
+    return fits
 
 
 def cuts(points: Array) -> tuple[list[float], list[int]]:

@@ -131,24 +131,16 @@ def read_arrows(
 ) -> list[Fitted | None]:
     """Of each group of pieces a shaft from its tail toward the tip, and a head of two barbs; None where the ink
     has no head, or where it takes more than `most` of the group [nats]."""
-    limits = [math.inf] * len(groups) if most is None else most
+    limits = [math.inf] * len(groups) if most is None else [m - RARE_ARROW - 4 * PARAMETER for m in most]
+    fits = fit_arrows(page.strokes, groups, limits)
     return [
-        None if fit is None else _arrow(page, group, fit, limit)
-        for group, fit, limit in zip(groups, fit_arrows(page.strokes, groups), limits, strict=True)
+        None if fit is None else _arrow(page, group, fit) for group, fit in zip(groups, fits, strict=True)
     ]
 
 
-def _arrow(page: Page, group: ArrowGroup, fit: ArrowFit, most: float) -> Fitted | None:
+def _arrow(page: Page, group: ArrowGroup, fit: ArrowFit) -> Fitted:
     names, tail, _ = group
     shaft, left, right = fit.lengths
-    # a head is two barbs alike, at some 35 degrees, less than half as long as the shaft
-    alike = (math.log(left / right) / 0.35) ** 2
-    size = (math.log((left + right) / 2 / shaft / 0.45) / 0.4) ** 2
-    spread = sum(((angle - 0.6) / 0.25) ** 2 for angle in fit.angles)
-    # tail and tip; the head is said by how unlike a head it is
-    unlike = 0.5 * (alike + size + spread)
-    if RARE_ARROW + 4 * PARAMETER + unlike > most:
-        return None
     pieces = [page.pieces[i] for i in names]
     # an arrow whose ends meet is no loop, nor a barb that was drawn forth and back
     whole = (
@@ -167,7 +159,8 @@ def _arrow(page: Page, group: ArrowGroup, fit: ArrowFit, most: float) -> Fitted 
     parts = zip((shaft, left, right), OFTEN, fit.ink, strict=True)
     wrong = sum(max(long - ink, ink - often * long, 0.0) for long, often, ink in parts)
     again = FREE * wrong / sum(fit.ink) * count + misfit(fit.bare / (GAPS * shaft) ** 2, count)
-    cost = RARE_ARROW + 4 * PARAMETER + off + again + unlike
+    # tail and tip; the head is said by how unlike a head it is
+    cost = RARE_ARROW + 4 * PARAMETER + off + again + fit.unlike
     tip, left, right = fit.head.tolist()
     figure = np.array([tail, tip, left, tip, right, tip])
     return Fitted("arrow", tuple(sorted(names)), cost, np.array([tail, tip]), figure=figure)

@@ -190,7 +190,7 @@ class Proposals:
                 most = self._said(names) + HOPELESS
                 for cross in fitted((names, "cross"), lambda n=names, m=most: _kept(read_cross(page, n, m))):  # type: ignore[misc]
                     out += [cross, *with_strays(page, cross, self.free)]
-            out += self._arrows(p, known, fits)
+            out += self._arrows(p)
         said = [(c, self._said(c.pieces) - c.cost) for c in out]
         likely = [(c, gain) for c, gain in said if gain > -HOPELESS]
         return proposing([c for c, _ in likely], [gain for _, gain in likely], looked, fits)
@@ -199,22 +199,14 @@ class Proposals:
         """Nats to say pieces freely."""
         return sum(map(self.free.__getitem__, names))
 
-    def _arrows(self, p: Piece, known: Fits, fits: Fits) -> list[Fitted]:
+    def _arrows(self, p: Piece) -> list[Fitted]:
         """Arrows of which a piece is the shaft, the best of each group."""
-        page = self.page
-        groups = {
-            (names, (tail, toward)): (names, tail, toward) for names, tail, toward in arrow_groups(page, p)
-        }
-        new = {key: group for key, group in groups.items() if key not in known}
-        most = [HOPELESS + self._said(names) for names, _ in new]
-        fresh = dict(zip(new, map(_kept, read_arrows(page, list(new.values()), most)), strict=True))
+        groups = list(arrow_groups(self.page, p))
         best: dict[tuple[int, ...], Fitted] = {}
-        for key in groups:
-            fits[key] = known[key] if key in known else fresh[key]
-            for arrow in fits[key]:
-                for mark in [arrow, *with_strays(page, arrow, self.free)]:
-                    if mark.pieces not in best or mark.cost < best[mark.pieces].cost:
-                        best[mark.pieces] = mark
+        for arrow in read_arrows(self.page, groups, [HOPELESS + self._said(names) for names, _, _ in groups]):
+            for mark in () if arrow is None else (arrow, *with_strays(self.page, arrow, self.free)):
+                if mark.pieces not in best or mark.cost < best[mark.pieces].cost:
+                    best[mark.pieces] = mark
         return list(best.values())
 
 

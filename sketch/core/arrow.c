@@ -5,18 +5,25 @@
 
 enum { STEPS = 12 }; /* along each part of an arrow, to look for its ink */
 
+/* A head is two barbs alike, at some 35 degrees, less than half as long as the shaft; the spreads of these. */
+static const double ALIKE = 0.35; /* of the logarithm of one barb over the other */
+static const double SIZE = 0.45, SIZES = 0.4; /* of the shaft, and of its logarithm */
+static const double ANGLE = 0.6, ANGLES = 0.25; /* [rad] */
+
 typedef struct {
     double head[6]; /* the tip and the barbs' ends [pixels] */
     double lengths[3]; /* of the shaft and of the barbs [pixels] */
     double angles[2]; /* between barb and shaft */
+    double unlike; /* nats of how unlike a head its head is */
     double ink[3]; /* length of the ink that is nearest to the shaft, and to each barb [pixels] */
     double bare; /* mean squared distance of the arrow from the ink [pixels²] */
     double off[]; /* of each stroke from the arrow */
 } Arrow;
 
-/* The arrow on `count` strokes; returns 0 where the ink has no head: a barb on each side, pointing back. */
+/* The arrow on `count` strokes; returns 0 where the ink has no head, a barb on each side that points back, or none that is
+ * less than `most` nats unlike one. */
 static int fit_arrow(const double *samples, const double *length, const int32_t *names, int count, const double *tail,
-                     const double *toward, Arrow *out) {
+                     const double *toward, double most, Arrow *out) {
     double *head = out->head, *lengths = out->lengths, *angles = out->angles, *ink = out->ink, *off = out->off;
     double ux = toward[0] - tail[0], uy = toward[1] - tail[1], l = hypot(ux, uy);
     if (l <= 0) return 0;
@@ -56,6 +63,11 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
     angles[1] = atan2(tip[1] - right[1], tip[0] - right[0]);
     for (int e = 0; e < 2; e++)
         if (angles[e] < 0.15 || angles[e] > 1.4 || lengths[e + 1] < 0.1 * reach) return 0;
+    double alike = log(lengths[1] / lengths[2]) / ALIKE;
+    double size = log((lengths[1] + lengths[2]) / 2 / lengths[0] / SIZE) / SIZES;
+    double spread[2] = {(angles[0] - ANGLE) / ANGLES, (angles[1] - ANGLE) / ANGLES};
+    out->unlike = 0.5 * (alike * alike + size * size + (spread[0] * spread[0] + spread[1] * spread[1]));
+    if (out->unlike > most) return 0;
     ink[0] = ink[1] = ink[2] = 0;
     for (int k = 0; k < count; k++) {
         off[k] = 0;
@@ -103,13 +115,15 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
  *
  * samples: of every stroke of the page, (strokes, SAMPLES, 2) [pixels]; length: of each stroke, a row of `measure` apart
  * [pixels]; names: the strokes of the groups, one after another; ends: where each of `count` groups ends.
- * given: (count, 4): of each, the shaft's tail and a point on the way to the tip.
+ * given: (count, 5): of each, the shaft's tail, a point on the way to the tip, and the most nats that the head may be unlike
+ * one.
  * Out: fits: for each group a row of `width` doubles, an Arrow; one without a head has a shaft of length 0. */
 INK_API void ink_arrows(const double *samples, const double *length, const int32_t *names, const int32_t *ends,
                         int32_t count, const double *given, int32_t width, double *fits) {
     for (int g = 0, first = 0; g < count; first = ends[g++]) {
         Arrow *arrow = (Arrow *)(fits + width * g);
-        if (!fit_arrow(samples, length, names + first, ends[g] - first, given + 4 * g, given + 4 * g + 2, arrow))
+        if (!fit_arrow(samples, length, names + first, ends[g] - first, given + 5 * g, given + 5 * g + 2,
+                       given[5 * g + 4], arrow))
             arrow->lengths[0] = 0;
     }
 }
