@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.grouping import arrow_groups
+from sketch.grouping import shafts
 from sketch.kernel import cuts
 from sketch.marks import read_arrows, read_bar, read_cross
 from sketch.outlines import read_outline
@@ -71,5 +71,5 @@ def _meant(page: Page, p: Piece) -> Iterator[float]:
         found += read_outline(page, [(p.index, False)])
     yield from (f.cost for f in found if f is not None)
     found = [read_cross(page, (p.index,))]
-    found += read_arrows(page, [group for group in arrow_groups(page, p) if group[0] == (p.index,)])
+    found += read_arrows(page, [shaft for shaft in shafts(page, p) if shaft.names == (p.index,)])
     yield from (f.cost for f in found if f is not None)

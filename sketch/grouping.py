@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import combinations
 
 import numpy as np
 
+from sketch.kernel import Shaft
 from sketch.loose import Chain
 from sketch.pieces import Array, Page, Piece, Point
 
-__all__ = ["arrow_groups", "closing_chains", "closing_ink", "crosses"]
+__all__ = ["closing_chains", "closing_ink", "crosses", "shafts"]
 
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
 MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
@@ -83,28 +83,24 @@ def _is_bar(p: Piece) -> bool:
     return p.length < 1.6 * p.extent and p.straight < 0.12
 
 
-def arrow_groups(page: Page, p: Piece) -> Iterator[tuple[tuple[int, ...], Point, Point]]:
-    """A piece as an arrow's shaft, with others that may be its head; the shaft's tail and a point toward its
-    tip."""
-    if p.length > 1.3 * p.extent:
+def shafts(page: Page, p: Piece) -> Iterator[Shaft]:
+    """A piece as an arrow's shaft, with others that may be its head."""
+    if p.length > 1.3 * p.extent:  # the whole arrow in one stroke
         for k in (3, 4, 5):
             v = p.vertices[k]
-            yield (p.index,), _point(v[0]), _point(v[1])
-            yield (p.index,), _point(v[k]), _point(v[k - 1])
+            yield Shaft((p.index,), (0, 0), _point(v[0]), _point(v[1]))
+            yield Shaft((p.index,), (0, 0), _point(v[k]), _point(v[k - 1]))
     if p.length > 2.5 * p.extent:
         return
     if p.straight > 0.06:  # the shaft and one barb in one stroke
         v = p.vertices[2]
-        for tail, tip in ((v[0], v[1]), (v[2], v[1])):
-            for j in _heads(page, p, _point(tip)):
-                yield (p.index, j), _point(tail), _point(tip)
-        return
-    for tail_end, tip_end in (p.ends, p.ends[::-1]):
-        heads = _heads(page, p, tip_end)
-        for size in (1, 2):
-            for group in combinations(heads, size):
-                if page.apart(group[0], group[1:]):
-                    yield (p.index, *group), tail_end, tip_end
+        ends, heads = ((_point(v[0]), _point(v[1])), (_point(v[2]), _point(v[1]))), (1, 1)
+    else:
+        ends, heads = (p.ends, (p.ends[1], p.ends[0])), (1, 2)
+    for tail, tip in ends:
+        near = _heads(page, p, tip)
+        if near:
+            yield Shaft((p.index, *near), heads, tail, tip)
 
 
 def _point(v: list[float]) -> Point:

@@ -15,8 +15,8 @@ from sketch.library import library
 __all__ = [
     "SIDES",
     "ArrowFit",
-    "ArrowGroup",
     "ClosedFit",
+    "Shaft",
     "Strokes",
     "course",
     "cuts",
@@ -32,7 +32,6 @@ __all__ = [
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
-ArrowGroup = tuple[tuple[int, ...], Point, Point]  # strokes, the tail and a point toward the tip [pixels]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
 COURSE = 32  # as in core/course.c
@@ -42,7 +41,9 @@ _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_po
     ("ink_closed", _lib)
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
-_arrows = ctypes.CFUNCTYPE(None, *[_pointer] * 4, _int, _pointer, _int, _pointer)(("ink_arrows", _lib))
+_arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _pointer, _pointer, _double, _pointer, _pointer)(
+    ("ink_arrows", _lib)
+)
 _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
 _off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
@@ -104,14 +105,30 @@ class ClosedFit(NamedTuple):
         return np.asarray(self.mean + self.corners[sides, :sides] @ self.back.T)
 
 
-class ArrowFit(NamedTuple):
-    """An arrow on some strokes: its tip and its barbs' ends [pixels] (see core/arrow.c).
+class Shaft(NamedTuple):
+    """What may be an arrow's shaft.
 
+    names: its stroke, then those that may be its head.  heads: how many of them it takes, at least and at most.
+    tail, toward: its tail, and a point toward its tip [pixels].
+    """
+
+    names: tuple[int, ...]
+    heads: tuple[int, int]
+    tail: Point
+    toward: Point
+
+
+class ArrowFit(NamedTuple):
+    """An arrow on some strokes (see core/arrow.c).
+
+    names: the shaft's stroke, and those of the head.  tail: [pixels].  head: its tip and its barbs' ends [pixels].
     lengths, ink: of the shaft and of each barb, and of the ink nearest to each [pixels].  unlike: nats of how
     unlike a head its head is.
     bare: mean squared distance of the arrow from the ink [pixels²].  off: of each stroke from the arrow.
     """
 
+    names: tuple[int, ...]
+    tail: Point
     head: Array
     lengths: list[float]
     unlike: float
@@ -186,35 +203,38 @@ def fit_closed(
 
 
 def fit_arrows(
-    strokes: Strokes, groups: Sequence[ArrowGroup], most: Sequence[float]
-) -> list[ArrowFit | None]:
-    """Fit an arrow to each of some groups of strokes; None where they have no head, or one that is more than
-    `most` nats unlike one."""
-    if not groups:
-        return []
-    names, ends = [i for g in groups for i in g[0]], accumulate(len(g[0]) for g in groups)
-    which = np.array([*names, *ends], dtype=np.int32)
-    given = np.array([(*tail, *toward, m) for (_, tail, toward), m in zip(groups, most, strict=True)])
-    width = 16 + max(len(g[0]) for g in groups)
-    out = np.empty((len(groups), width))
-    at = which.ctypes.data
-    _arrows(
+    strokes: Strokes, shafts: Sequence[Shaft], free: Sequence[float], slack: float
+) -> list[ArrowFit]:
+    """The arrows of some shafts and their heads.
+
+    free: nats to say each of their strokes freely, one shaft after another.  slack: nats above those of its
+    strokes that an arrow's head may be unlike one.
+    """
+    names, ends = [i for s in shafts for i in s.names], list(accumulate(len(s.names) for s in shafts))
+    which = np.array([*names, *ends, *(n for s in shafts for n in s.heads)], dtype=np.int32)
+    given = np.array([*free, *(v for s in shafts for point in s[2:] for v in point)])
+    most = sum(len(s.names) ** 2 for s in shafts)
+    groups, fits = np.empty((most, 4), dtype=np.int32), np.empty((most, 19))
+    at, values = which.ctypes.data, given.ctypes.data
+    count = _arrows(
         strokes.samples.ctypes.data,
         strokes.measure.ctypes.data,
         at,
+        values,
         at + 4 * len(names),
-        len(groups),
-        given.ctypes.data,
-        width,
-        out.ctypes.data,
+        len(shafts),
+        at + 4 * (len(names) + len(ends)),
+        values + 8 * len(names),
+        slack,
+        fits.ctypes.data,
+        groups.ctypes.data,
     )
-    fits: list[ArrowFit | None] = [None] * len(groups)
-    for k in np.flatnonzero(out[:, 6]).tolist():
-        v = out[k].tolist()
-        fits[k] = ArrowFit(
-            out[k, :6].reshape(3, 2), v[6:9], v[11], v[12:15], v[15], v[16 : 16 + len(groups[k][0])]
-        )
-    return fits
+    found = []
+    for (g, *group), v in zip(groups[:count].tolist(), fits[:count].tolist(), strict=True):
+        strokes_of = tuple(i for i in group if i >= 0)
+        head = np.array(v[:6]).reshape(3, 2)
+        found.append(ArrowFit(strokes_of, shafts[g].tail, head, v[6:9], v[11], v[12:15], v[15], v[16:]))
+    return found
 
 
 def cuts(points: Array) -> tuple[list[float], list[int]]:

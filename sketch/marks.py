@@ -9,7 +9,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from sketch.kernel import ArrowFit, ArrowGroup, course, fit_arrows, off_outline
+from sketch.kernel import ArrowFit, Shaft, course, fit_arrows, off_outline
 from sketch.outlines import RETRACE
 from sketch.pieces import Array, Page, Piece
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
@@ -126,22 +126,21 @@ def _crossing(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> tuple[float, float]
     return ((t - 0.5) ** 2 + (s - 0.5) ** 2) / (2 * 0.12**2), 0.5 * (math.log(p / q) / 0.3) ** 2
 
 
-def read_arrows(
-    page: Page, groups: Sequence[ArrowGroup], most: Sequence[float] | None = None
-) -> list[Fitted | None]:
-    """Of each group of pieces a shaft from its tail toward the tip, and a head of two barbs; None where the ink
-    has no head, or where it takes more than `most` of the group [nats]."""
-    limits = [math.inf] * len(groups) if most is None else [m - RARE_ARROW - 4 * PARAMETER for m in most]
-    fits = fit_arrows(page.strokes, groups, limits)
-    return [
-        None if fit is None else _arrow(page, group, fit) for group, fit in zip(groups, fits, strict=True)
-    ]
+def read_arrows(page: Page, shafts: Sequence[Shaft], worse: float = math.inf) -> list[Fitted]:
+    """Arrows of shafts, each from its tail toward the tip, and heads of two barbs.
+
+    worse: nats more than their ink takes freely that arrows are looked for up to.
+    """
+    if not shafts:
+        return []
+    free = [page.pieces[i].unread for shaft in shafts for i in shaft.names]
+    fits = fit_arrows(page.strokes, shafts, free, worse - RARE_ARROW - 4 * PARAMETER)
+    return [_arrow(page, fit) for fit in fits if page.apart(fit.names[-1], fit.names[:-1])]
 
 
-def _arrow(page: Page, group: ArrowGroup, fit: ArrowFit) -> Fitted:
-    names, tail, _ = group
+def _arrow(page: Page, fit: ArrowFit) -> Fitted:
     shaft, left, right = fit.lengths
-    pieces = [page.pieces[i] for i in names]
+    pieces = [page.pieces[i] for i in fit.names]
     # an arrow whose ends meet is no loop, nor a barb that was drawn forth and back
     whole = (
         [SHAFT * shaft]
@@ -149,7 +148,7 @@ def _arrow(page: Page, group: ArrowGroup, fit: ArrowFit) -> Fitted:
         else [p.extent / 2 if p.extent < 0.6 * shaft else None for p in pieces]
     )
     off = 0.0
-    for p, square, scale in zip(pieces, fit.off, whole, strict=True):
+    for p, square, scale in zip(pieces, fit.off, whole, strict=False):
         cost = misfit_of(p, square, scale)
         if cost > HEAD * p.observations and p.extent < 0.6 * shaft and _within(page, p, fit.head):
             cost = HEAD * p.observations
@@ -162,8 +161,8 @@ def _arrow(page: Page, group: ArrowGroup, fit: ArrowFit) -> Fitted:
     # tail and tip; the head is said by how unlike a head it is
     cost = RARE_ARROW + 4 * PARAMETER + off + again + fit.unlike
     tip, left, right = fit.head.tolist()
-    figure = np.array([tail, tip, left, tip, right, tip])
-    return Fitted("arrow", tuple(sorted(names)), cost, np.array([tail, tip]), figure=figure)
+    figure = np.array([fit.tail, tip, left, tip, right, tip])
+    return Fitted("arrow", tuple(sorted(fit.names)), cost, np.array([fit.tail, tip]), figure=figure)
 
 
 def _within(page: Page, piece: Piece, head: Array) -> bool:

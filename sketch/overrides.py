@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from sim.scene import InputError
-from sketch.grouping import arrow_groups, closing_chains
+from sketch.grouping import closing_chains, shafts
 from sketch.loose import Chain
 from sketch.marks import line_of_any_course, read_arrows, read_bar, read_cross
 from sketch.outlines import read_outline
@@ -70,9 +70,8 @@ def forced_reading(page: Page, strokes: tuple[int, ...], kind: str) -> Fitted | 
 
 
 def _arrow(page: Page, names: tuple[int, ...]) -> Fitted | None:
-    groups = [g for i in names for g in arrow_groups(page, page.pieces[i]) if tuple(sorted(g[0])) == names]
-    found = read_arrows(page, groups)
-    return min((f for f in found if f is not None), key=lambda f: f.cost, default=None)
+    found = read_arrows(page, [shaft for i in names for shaft in shafts(page, page.pieces[i])])
+    return min((f for f in found if f.pieces == names), key=lambda f: f.cost, default=None)
 
 
 def _line(piece: Piece) -> np.ndarray:

@@ -16,7 +16,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.grouping import arrow_groups, closing_chains, closing_ink, crosses
+from sketch.grouping import closing_chains, closing_ink, crosses, shafts
 from sketch.loose import End
 from sketch.marks import read_arrows, read_bar, read_cross, read_line, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
@@ -201,10 +201,9 @@ class Proposals:
 
     def _arrows(self, p: Piece) -> list[Fitted]:
         """Arrows of which a piece is the shaft, the best of each group."""
-        groups = list(arrow_groups(self.page, p))
         best: dict[tuple[int, ...], Fitted] = {}
-        for arrow in read_arrows(self.page, groups, [HOPELESS + self._said(names) for names, _, _ in groups]):
-            for mark in () if arrow is None else (arrow, *with_strays(self.page, arrow, self.free)):
+        for arrow in read_arrows(self.page, list(shafts(self.page, p)), HOPELESS):
+            for mark in (arrow, *with_strays(self.page, arrow, self.free)):
                 if mark.pieces not in best or mark.cost < best[mark.pieces].cost:
                     best[mark.pieces] = mark
         return list(best.values())

@@ -2,8 +2,12 @@
 #include "fit.h"
 
 #include <math.h>
+#include <string.h>
 
-enum { STEPS = 12 }; /* along each part of an arrow, to look for its ink */
+enum {
+    STEPS = 12, /* along each part of an arrow, to look for its ink */
+    MOST_STROKES = 3 /* of an arrow: its shaft and two barbs */
+};
 
 /* A head is two barbs alike, at some 35 degrees, less than half as long as the shaft; the spreads of these. */
 static const double ALIKE = 0.35; /* of the logarithm of one barb over the other */
@@ -17,7 +21,7 @@ typedef struct {
     double unlike; /* nats of how unlike a head its head is */
     double ink[3]; /* length of the ink that is nearest to the shaft, and to each barb [pixels] */
     double bare; /* mean squared distance of the arrow from the ink [pixels²] */
-    double off[]; /* of each stroke from the arrow */
+    double off[MOST_STROKES]; /* of each stroke from the arrow */
 } Arrow;
 
 /* The arrow on `count` strokes; returns 0 where the ink has no head, a barb on each side that points back, or none that is
@@ -111,19 +115,34 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
     return 1;
 }
 
-/* Arrows on groups of strokes.
+/* Arrows of shafts with their heads.
  *
  * samples: of every stroke of the page, (strokes, SAMPLES, 2) [pixels]; length: of each stroke, a row of `measure` apart
- * [pixels]; names: the strokes of the groups, one after another; ends: where each of `count` groups ends.
- * given: (count, 5): of each, the shaft's tail, a point on the way to the tip, and the most nats that the head may be unlike
- * one.
- * Out: fits: for each group a row of `width` doubles, an Arrow; one without a head has a shaft of length 0. */
-INK_API void ink_arrows(const double *samples, const double *length, const int32_t *names, const int32_t *ends,
-                        int32_t count, const double *given, int32_t width, double *fits) {
+ * [pixels].
+ * names: of each shaft its stroke, then those that may be its head, one shaft after another; free: the nats to say each of
+ * them freely; ends: where each of `count` shafts ends; heads: (count, 2): how many strokes may make the head, at least
+ * and at most, up to two; given: (count, 4): the shaft's tail and a point on the way to the tip.
+ * slack: the most nats that an arrow's head may be unlike one, above what its strokes take freely.
+ * Out: fits: arrows with a head, in order; groups: (fits, 1 + MOST_STROKES) of each the shaft's number and the strokes, -1
+ * for none. There is room for all combinations. Returns how many there are. */
+INK_API int32_t ink_arrows(const double *samples, const double *length, const int32_t *names, const double *free,
+                           const int32_t *ends, int32_t count, const int32_t *heads, const double *given, double slack,
+                           Arrow *fits, int32_t *groups) {
+    int found = 0;
     for (int g = 0, first = 0; g < count; first = ends[g++]) {
-        Arrow *arrow = (Arrow *)(fits + width * g);
-        if (!fit_arrow(samples, length, names + first, ends[g] - first, given + 5 * g, given + 5 * g + 2,
-                       given[5 * g + 4], arrow))
-            arrow->lengths[0] = 0;
+        const int32_t *name = names + first;
+        const double *its = free + first;
+        int most = ends[g] - first;
+        for (int size = heads[2 * g]; size <= heads[2 * g + 1]; size++)
+            for (int a = 1; a < (size > 0 ? most : 2); a++)
+                for (int b = a + 1; b < (size > 1 ? most : a + 2); b++) {
+                    const int32_t group[] = {g, name[0], size > 0 ? name[a] : -1, size > 1 ? name[b] : -1};
+                    double limit = slack + its[0] + (size > 0 ? its[a] : 0) + (size > 1 ? its[b] : 0);
+                    if (!fit_arrow(samples, length, group + 1, size + 1, given + 4 * g, given + 4 * g + 2, limit,
+                                   fits + found))
+                        continue;
+                    memcpy(groups + 4 * found++, group, sizeof group);
+                }
     }
+    return found;
 }
