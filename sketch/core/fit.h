@@ -2,6 +2,7 @@
 #ifndef SKETCH_FIT_H
 #define SKETCH_FIT_H
 
+#include <math.h>
 #include <stdint.h>
 
 #if defined(_WIN32)
@@ -58,6 +59,9 @@ double sample_parts(const double *xy, const int32_t *part_end, int parts, double
 
 INK_API int32_t ink_is_simple(const double *v, int32_t n);
 INK_API double ink_depth(double x, double y, const double *outline, int32_t n);
+
+/* Of a vector whose squares neither vanish nor overflow: in an outline's own frame. hypot takes five times as long. */
+static inline double length(double x, double y) { return sqrt(x * x + y * y); }
 
 double segment_distance2(double px, double py, const double a[2], const double b[2]);
 

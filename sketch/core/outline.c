@@ -56,6 +56,7 @@ static const double BOW = 0.0195;   /* usual bow of a straight side, as a share 
 static const double STIFFNESS[2] = {0.02, 0.6};
 static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
 static const double REFLEX = 1.2;  /* likewise one that turns inward */
+static const double TIE = 1e-9; /* nats that no polygon is better by that was found again from another beginning */
 static const double INWARD = 4.0;  /* nats that a corner which turns inward is rarer */
 static const double FLATNESS = 0.096;
 static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
@@ -105,11 +106,21 @@ static double fit_round(const double *x, const double *y, const double *factor, 
     return sum / SAMPLES;
 }
 
-/* Corners of the k-gon whose sides are the runs bounded by `cut` (counted from `start`), and its mean squared distance.
- * Ink that overshoots a corner lies on its side's line: it pays for the length beyond at a quarter. */
+/* The corners of a k-gon whose sides are the runs bounded by `cut` (counted from `start`): corner q is where side q begins. */
+static void polygon_corners(const Runs *r, int start, const int *cut, int k, const Line *side, double *corners) {
+    for (int q = 0; q < k; q++) {
+        int b = (start + cut[q]) % r->n, e = (b + r->n - 1) % r->n;
+        double end[2] = {r->x[e], r->y[e]}, begin[2] = {r->x[b], r->y[b]};
+        corner(&side[(q + k - 1) % k], &side[q], end, begin, corners + 2 * q);
+    }
+}
+
+/* The sides of the k-gon over the runs bounded by `cut`, and its mean squared distance. Ink that overshoots a corner lies on
+ * its side's line: it pays for the length beyond at a quarter. */
 static double fit_polygon(const Runs *r, const double *factor, int start, const int *cut, int k, double stiffness,
-                          const double stretch[2], double cap2, double *vertices, double *oddness, double *perimeter) {
-    Line side[SIDES], chord[SIDES];
+                          const double stretch[2], double cap2, Line *side, double *oddness, double *perimeter) {
+    Line chord[SIDES];
+    const double *x = r->x + start, *y = r->y + start; /* the samples are there twice, so that none is beyond the end */
     double drawn[2 * SIDES];
     for (int q = 0; q < k; q++) {
         chord[q] = side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q], stiffness);
@@ -117,43 +128,38 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         chord[q].x -= off * side[q].dy;
         chord[q].y += off * side[q].dx;
     }
-    for (int q = 0; q < k; q++) { /* vertex q is where side q begins */
-        int before = (q + k - 1) % k;
-        int b = (start + cut[q]) % r->n, e = (b + r->n - 1) % r->n;
-        double end[2] = {r->x[e], r->y[e]}, begin[2] = {r->x[b], r->y[b]};
-        corner(&chord[before], &chord[q], end, begin, drawn + 2 * q);
-        corner(&side[before], &side[q], end, begin, vertices + 2 * q);
-    }
+    polygon_corners(r, start, cut, k, chord, drawn);
     double sum = 0, odd = 0, around = 0, area = 0;
     for (int q = 0; q < k; q++) {
         const double *a = drawn + 2 * q, *b = drawn + 2 * ((q + 1) % k);
-        around += hypot((b[0] - a[0]) / stretch[0], (b[1] - a[1]) / stretch[1]);
+        around += length((b[0] - a[0]) / stretch[0], (b[1] - a[1]) / stretch[1]);
         area += a[0] * b[1] - a[1] * b[0];
     }
     for (int q = 0; q < k; q++) {
         const double *a = drawn + 2 * q, *b = drawn + 2 * ((q + 1) % k);
-        double dx = b[0] - a[0], dy = b[1] - a[1], l = hypot(dx, dy), bow = side[q].bow;
+        double dx = b[0] - a[0], dy = b[1] - a[1], l = length(dx, dy), bow = side[q].bow;
+        double per = l > 0 ? 1 / l : 0, ux = dx * per, uy = dy * per;
         for (int i = cut[q]; i < cut[q + 1]; i++) {
-            double px = r->x[(start + i) % r->n] - a[0], py = r->y[(start + i) % r->n] - a[1];
-            double t = l > 0 ? (px * dx + py * dy) / l : 0, h = l > 0 ? (py * dx - px * dy) / l : hypot(px, py);
-            double over = t < 0 ? -t : t > l ? t - l : 0;
-            if (over == 0 && l > 0) {
-                double u = 2 * t / l - 1;
-                h += bow * (1 - u * u);
-            }
-            sum += fmin(h * h + 0.0625 * over * over, cap2) * factor[(start + i) % r->n];
+            double px = x[i] - a[0], py = y[i] - a[1];
+            double t = px * ux + py * uy, h = l > 0 ? py * ux - px * uy : length(px, py);
+            double over = t < 0 ? -t : t > l ? t - l : 0, u = 2 * t * per - 1;
+            h += over == 0 && l > 0 ? bow * (1 - u * u) : 0;
+            double off2 = h * h + 0.0625 * over * over;
+            sum += (off2 < cap2 ? off2 : cap2) * factor[start + i < r->n ? start + i : start + i - r->n];
         }
         const double *c = drawn + 2 * ((q + 2) % k);
         double turn = atan2(dx * (c[1] - b[1]) - dy * (c[0] - b[0]), dx * (c[0] - b[0]) + dy * (c[1] - b[1]));
         int reflex = turn * area < 0;
         double bent = bow / (BOW * fmax(l, 1e-9));
         double flat = fmax((reflex ? REFLEX : FLAT) - fabs(turn), 0) / FLATNESS;
-        double short_of = fmax(fmin(SHORT, 0.7 / k) - hypot(dx / stretch[0], dy / stretch[1]) / fmax(around, 1e-9), 0);
-        /* what rounds a corner turns by as much as a corner does; the end of a wall turns back */
-        const double *z = drawn + 2 * ((q + k - 1) % k);
-        double fx = a[0] - z[0], fy = a[1] - z[1], gx = c[0] - b[0], gy = c[1] - b[1];
-        double back = fabs(atan2(fx * dy - fy * dx, fx * dx + fy * dy) + atan2(dx * gy - dy * gx, dx * gx + dy * gy));
-        double brief = short_of / SHORTNESS * fmin(fmax((WALL - back) / 0.5, 0), 1);
+        double brief = fmin(SHORT, 0.7 / k) - length(dx / stretch[0], dy / stretch[1]) / fmax(around, 1e-9);
+        if (brief > 0) { /* what rounds a corner turns by as much as a corner does; the end of a wall turns back */
+            const double *z = drawn + 2 * ((q + k - 1) % k);
+            double fx = a[0] - z[0], fy = a[1] - z[1];
+            double back = fabs(atan2(fx * dy - fy * dx, fx * dx + fy * dy) + turn);
+            brief *= fmin(fmax((WALL - back) / 0.5, 0), 1) / SHORTNESS;
+        } else
+            brief = 0;
         odd += 0.5 * (bent * bent + flat * flat + brief * brief) + (reflex ? INWARD : 0);
     }
     *oddness = odd;
@@ -164,12 +170,14 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
 /* A writer's precision goes with the size of what is drawn: being off counts by a part's own size, and where the part closes
  * by itself, by its thickness. A little loop is no careless piece of something large. */
 static void own_scale(const double *z, const int32_t *part_end, int parts, double ink, double factor[SAMPLES]) {
+    for (int q = 0; parts == 1 && q < SAMPLES; q++) factor[q] = 1;
+    if (parts == 1) return;
     double done = 0;
     int k = 0;
     for (int p = 0, i = 0; p < parts; i = part_end[p++]) {
         double l = 0, m[2] = {0, 0}, s[3] = {0, 0, 0}, f = 1;
         for (int j = i + 1; j < part_end[p]; j++) {
-            double dx = z[2 * j] - z[2 * j - 2], dy = z[2 * j + 1] - z[2 * j - 1], w = hypot(dx, dy);
+            double dx = z[2 * j] - z[2 * j - 2], dy = z[2 * j + 1] - z[2 * j - 1], w = length(dx, dy);
             double cx = 0.5 * (z[2 * j] + z[2 * j - 2]), cy = 0.5 * (z[2 * j + 1] + z[2 * j - 1]);
             l += w;
             m[0] += w * cx;
@@ -179,11 +187,11 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
             s[2] += w * (cy * cy + dy * dy / 12);
         }
         int e = part_end[p] - 1;
-        if (parts > 1 && l > 0) {
+        if (l > 0) {
             double xx = s[0] / l - m[0] * m[0] / (l * l), yy = s[2] / l - m[1] * m[1] / (l * l);
             double xy = s[1] / l - m[0] * m[1] / (l * l), half = 0.5 * (xx - yy);
             double size2 = 4 * (xx + yy); /* 1 for a side of a square */
-            if (hypot(z[2 * e] - z[2 * i], z[2 * e + 1] - z[2 * i + 1]) < 0.15 * l)
+            if (length(z[2 * e] - z[2 * i], z[2 * e + 1] - z[2 * i + 1]) < 0.15 * l)
                 size2 = 2 * (0.5 * (xx + yy) - sqrt(half * half + xy * xy));
             f = 1 / fmin(fmax(size2, 1e-4), 1);
         }
@@ -198,7 +206,7 @@ static double nearest2(const double *z, int to, int from, int end, int step, dou
     for (int i = from; i != end && done < reach; i += step) {
         const double *a = z + 2 * i, *b = z + 2 * (i + step);
         best = fmin(best, segment_distance2(z[2 * to], z[2 * to + 1], a, b));
-        done += hypot(b[0] - a[0], b[1] - a[1]);
+        done += length(b[0] - a[0], b[1] - a[1]);
     }
     return best;
 }
@@ -240,10 +248,12 @@ static void fit_rounds(const Runs *r, const Frame *f, const double *factor, doub
     out[8] = scale * sqrt(fmax(conic[4] + conic[2] * conic[2] / 4 + conic[3] * conic[3] / 4, 0));
 }
 
-/* The best polygons of 3 .. SIDES sides over two beginnings, where they cost less than those that are there. */
+/* The best polygons of 3 .. SIDES sides over two beginnings, where they cost less than those that are there.
+ * more: nats to say one more side. */
 static void best_polygons(const Runs *r, const double *factor, int way, double stiffness, const double stretch[2],
-                          double cap2, double ink, double observations, double side, double hopeless, double *residual,
+                          double cap2, double ink, double observations, double more, double hopeless, double *residual,
                           double *cost, double *vertices) {
+    Line side[SIDES];
     double polygon[2 * SIDES], odd, around;
     int cut[SIDES + 1], start = 0;
     Split split;
@@ -257,16 +267,19 @@ static void best_polygons(const Runs *r, const double *factor, int way, double s
         for (int k = 3; k <= SIDES; k++) {
             split_further(&split, k);
             split_bounds(&split, k, cut);
-            double s = fit_polygon(r, factor, start, cut, k, stiffness, stretch, cap2, polygon, &odd, &around);
+            double s = fit_polygon(r, factor, start, cut, k, stiffness, stretch, cap2, side, &odd, &around);
             double c = misfit(s, observations) + odd + retraced(ink, around, observations);
-            least = fmin(least, c + k * side);
-            if (c < cost[k] && ink_is_simple(polygon, k)) {
-                cost[k] = c;
-                residual[k] = s;
-                for (int q = 0; q < 2 * k; q++) vertices[2 * SIDES * k + q] = polygon[q] / stretch[q % 2];
+            least = fmin(least, c + k * more);
+            if (c < cost[k] - TIE) {
+                polygon_corners(r, start, cut, k, side, polygon);
+                if (ink_is_simple(polygon, k)) {
+                    cost[k] = c;
+                    residual[k] = s;
+                    for (int q = 0; q < 2 * k; q++) vertices[2 * SIDES * k + q] = polygon[q] / stretch[q % 2];
+                }
             }
             if (k == 5) next = (start + cut[2]) % SAMPLES;
-            if (k >= 5 && (k + 1) * side > least) /* more sides cost more than they could save */
+            if (k >= 5 && (k + 1) * more > least) /* more sides cost more than they could save */
                 break;
         }
         if (least > hopeless) return;
