@@ -32,10 +32,25 @@ static bool share_member(const Row *i, const Row *j) {
     return (i->a >= 0 && (i->a == j->a || i->a == j->b)) || (i->b >= 0 && (i->b == j->a || i->b == j->b));
 }
 
+enum { HOLDS = -1, IDLE = -2 };
+
+/* Put a row, and those that hang together with it, at the end of the order: breadth first over rows that share a body (Cuthill
+ * and McKee 1969).  From the end of a chain it comes out banded; what is reached last from anywhere is such an end. */
+static void spread(Active *active, const System *system, int32_t seed) {
+    int32_t head = active->count, *rank = active->rank;
+    rank[seed] = active->count;
+    active->row[active->count++] = seed;
+    for (; head < active->count; head++)
+        for (int32_t j = 0; j < system->row_count; j++) {
+            if (rank[j] != HOLDS || !share_member(&system->row[active->row[head]], &system->row[j])) continue;
+            rank[j] = active->count;
+            active->row[active->count++] = j;
+        }
+}
+
 int active_choose(Active *active, const System *system) {
     int status = reserve(active, system->row_count);
     if (status != SIM_OK) return status;
-    enum { HOLDS = -1, IDLE = -2 };
     int32_t *rank = active->rank;
     for (int32_t i = 0; i < system->row_count; i++) rank[i] = i < 2 * system->joint_count ? HOLDS : IDLE;
     for (int32_t k = 0; k < system->contact_count; k++) {
@@ -44,19 +59,15 @@ int active_choose(Active *active, const System *system) {
         if (c->active) rank[normal] = HOLDS;
         if (c->active && c->slide == 0 && c->friction > 0) rank[normal + 1] = HOLDS;
     }
-    /* Breadth first over rows that share a body (Cuthill and McKee 1969): chains come out banded. */
     active->count = 0;
     for (int32_t seed = 0; seed < system->row_count; seed++) {
         if (rank[seed] != HOLDS) continue;
-        int32_t head = active->count;
-        rank[seed] = active->count;
-        active->row[active->count++] = seed;
-        for (; head < active->count; head++)
-            for (int32_t j = 0; j < system->row_count; j++) {
-                if (rank[j] != HOLDS || !share_member(&system->row[active->row[head]], &system->row[j])) continue;
-                rank[j] = active->count;
-                active->row[active->count++] = j;
-            }
+        int32_t start = active->count;
+        spread(active, system, seed);
+        int32_t last = active->row[active->count - 1];
+        for (int32_t i = start; i < active->count; i++) rank[active->row[i]] = HOLDS;
+        active->count = start;
+        spread(active, system, last);
     }
     for (int32_t i = 0; i < active->count; i++) {
         active->softness[i] = 1;
@@ -68,8 +79,8 @@ int active_choose(Active *active, const System *system) {
 }
 
 static void weigh(const System *system, int32_t member, const double *f, double *weight) {
-    if (member < 0) return;
-    const Body *body = &system->world->body[system->member[member]];
+    const Body *body =
+        &system->world->body[member < 0 ? 0 : system->member[member]]; /* the background's inverses are 0 */
     weight[0] = body->inverse_mass * f[0];
     weight[1] = body->inverse_mass * f[1];
     weight[2] = body->inverse_moment * f[2];
@@ -82,10 +93,10 @@ static double along(const double *j, const double *weight) {
 /* J_i M^-1 F_j', of rows i and j with j's weight. */
 static double coupling(const Row *i, const Row *j, const double *weight) {
     double sum = 0;
-    if (i->a >= 0 && i->a == j->a) sum += along(i->ja, weight);
-    if (i->a >= 0 && i->a == j->b) sum += along(i->ja, weight + 3);
-    if (i->b >= 0 && i->b == j->a) sum += along(i->jb, weight);
-    if (i->b >= 0 && i->b == j->b) sum += along(i->jb, weight + 3);
+    if (i->a == j->a) sum += along(i->ja, weight);
+    if (i->a == j->b) sum += along(i->ja, weight + 3);
+    if (i->b == j->a) sum += along(i->jb, weight);
+    if (i->b == j->b) sum += along(i->jb, weight + 3);
     return sum;
 }
 

@@ -9,6 +9,7 @@
 #define FIRST_STEP 0.05 /* tried by the integrator [s], of bodies that have taken none */
 #define MOST_CONTACTS 10       /* of a group in motion: beyond that the crowd is cheaper */
 #define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
+#define MOST_RETURNS 4         /* times that lifts are held at an event and the rest looked at again */
 #define BOUNCE 0.1             /* bounces lower than this part of the tolerance are not followed */
 
 /* ---------------------------------------------------------------- who is in it */
@@ -140,22 +141,45 @@ static double pull_about(const System *g, const Contact *of) {
     return most;
 }
 
+/* Hold the contacts whose lift is too low to be seen, with those that touch. */
+static int hold_low(Exact *e) {
+    System *g = &e->group;
+    for (int32_t k = 0; k < g->contact_count; k++) {
+        Contact *c = &g->contact[k];
+        double speed = row_speed(contact_row(g, k), g->state), slip = row_speed(contact_row(g, k) + 1, g->state);
+        c->active = c->low || fabs(speed) <= e->slack.speed;
+        c->slide = fabs(slip) > e->slack.speed ? 1 : 0;
+    }
+    e->smooth.relax = 0;
+    int status = smooth_prepare(&e->smooth, g);
+    return status == SIM_OK ? project_velocities(&e->smooth, g) : status;
+}
+
 /* A body that rocks from corner to corner, ever lower, comes to rest on both: a lift too low to be seen is none. */
 static int settle_low_lifts(Exact *e) {
     System *g = &e->group;
     bool any = false;
     for (int32_t k = 0; k < g->contact_count; k++) {
         Contact *c = &g->contact[k];
-        double speed = row_speed(contact_row(g, k), g->state), slip = row_speed(contact_row(g, k) + 1, g->state);
-        bool low = speed > e->slack.speed && is_low(e, pull_about(g, c), speed);
-        any = any || low;
-        c->active = low || fabs(speed) <= e->slack.speed;
-        c->slide = fabs(slip) > e->slack.speed ? 1 : 0;
+        double speed = row_speed(contact_row(g, k), g->state);
+        c->low = speed > e->slack.speed && is_low(e, pull_about(g, c), speed);
+        any = any || c->low;
     }
-    if (!any) return SIM_OK;
-    e->smooth.relax = 0;
-    int status = smooth_prepare(&e->smooth, g);
-    return status == SIM_OK ? project_velocities(&e->smooth, g) : status;
+    return any ? hold_low(e) : SIM_OK;
+}
+
+/* The same by what brings a lift back once the modes are known.  Two contacts of a mechanism, each of which lifts the other
+ * when it closes, would take turns for as long as the load is on them. Whether any was settled. */
+static int settle_returns(Exact *e, bool *any) {
+    System *g = &e->group;
+    *any = false;
+    for (int32_t k = 0; k < g->contact_count; k++) {
+        Contact *c = &g->contact[k];
+        double speed = row_speed(contact_row(g, k), g->state);
+        c->low = speed > e->slack.speed && is_low(e, -row_acceleration(contact_row(g, k), e->acceleration), speed);
+        *any = *any || c->low;
+    }
+    return *any ? hold_low(e) : SIM_OK;
 }
 
 static int resolve(Exact *e, double time) {
@@ -404,6 +428,12 @@ int group_reform(Exact *e, double time) {
     if (status == SIM_BAD_INPUT) {
         status = resolve_shock(&e->solver, g, &e->slack);
         if (status == SIM_OK) status = find_modes(&e->solver, g, &e->slack, e->acceleration);
+    }
+    bool returns = true;
+    for (int round = 0; returns && round < MOST_RETURNS && status == SIM_OK; round++) {
+        status = settle_returns(e, &returns);
+        if (returns && status == SIM_OK) status = resolve(e, time);
+        if (returns && status == SIM_OK) status = find_modes(&e->solver, g, &e->slack, e->acceleration);
     }
     e->world->profile.impact_time += seconds_now() - start;
     if (status == SIM_OK && made_energy(e, energy, time)) status = SIM_BAD_INPUT;

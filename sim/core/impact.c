@@ -344,15 +344,6 @@ static void accelerations(const System *s, const double *force, double *out) {
     }
 }
 
-static double row_acceleration(const Row *row, const double *acceleration) {
-    double sum = row->bias;
-    for (int i = 0; i < 3; i++) {
-        if (row->a >= 0) sum += row->ja[i] * acceleration[3 * row->a + i];
-        if (row->b >= 0) sum += row->jb[i] * acceleration[3 * row->b + i];
-    }
-    return sum;
-}
-
 int find_modes(ContactSolver *solver, System *s, const Slack *slack, double *acceleration) {
     Rounds r;
     int status = system_place(s);

@@ -58,15 +58,6 @@ static void push(double *acceleration, int32_t i, const double *weight, double f
     for (int c = 0; c < 3; c++) acceleration[3 * i + c] += force * weight[c];
 }
 
-static double row_of(const Row *row, const double *acceleration) {
-    double sum = row->bias;
-    for (int i = 0; i < 3; i++) {
-        if (row->a >= 0) sum += row->ja[i] * acceleration[3 * row->a + i];
-        if (row->b >= 0) sum += row->jb[i] * acceleration[3 * row->b + i];
-    }
-    return sum;
-}
-
 /* The members' accelerations at the system's states into `out` (3 a member), and the contacts' forces. */
 static int accelerate(Smooth *s, System *system, double *out) {
     int status = system_place(system);
@@ -83,7 +74,8 @@ static int accelerate(Smooth *s, System *system, double *out) {
     memset(active->force, 0, (size_t)active->count * sizeof *active->force);
     active_factor(active, system, s->relax);
     for (int pass = 0; pass < 2; pass++) { /* the second pass takes away what relaxing left */
-        for (int32_t i = 0; i < active->count; i++) active->unknown[i] = -row_of(&system->row[active->row[i]], out);
+        for (int32_t i = 0; i < active->count; i++)
+            active->unknown[i] = -row_acceleration(&system->row[active->row[i]], out);
         active_solve(active);
         for (int32_t i = 0; i < active->count; i++) {
             const Row *row = &system->row[active->row[i]];
@@ -116,27 +108,34 @@ static int derive(Smooth *s, System *system, const double *y, double *k) {
     return status;
 }
 
+/* out := the sum of the stages' slopes with these weights: all components of a stage at once, as they lie. */
+static void combine(const Smooth *s, const double *weight, int count, int32_t n, double *restrict out) {
+    memset(out, 0, (size_t)n * sizeof *out);
+    for (int j = 0; j < count; j++) {
+        const double *k = s->k[j];
+        if (weight[j] == 0) continue;
+        for (int32_t c = 0; c < n; c++) out[c] += weight[j] * k[c];
+    }
+}
+
 static int stage(Smooth *s, System *system, int i, double h) {
     int32_t n = 6 * system->count;
-    for (int32_t c = 0; c < n; c++) {
-        double sum = 0;
-        for (int j = 0; j < i; j++) sum += DOP853_A[i][j] * s->k[j][c];
-        s->trial[c] = s->start[c] + h * sum;
-    }
+    combine(s, DOP853_A[i], i, n, s->trial);
+    for (int32_t c = 0; c < n; c++) s->trial[c] = s->start[c] + h * s->trial[c];
     return derive(s, system, s->trial, s->k[i]);
 }
 
 /* The estimated error of a step, of what is allowed. */
 static double step_error(const Smooth *s, const System *system, double h) {
     double fifth = 0, third = 0, allowed = LOCAL * s->tolerance;
+    double *error5 = s->trial, *error3 = s->end;
+    combine(s, DOP853_E5, STAGES, 6 * system->count, error5);
+    combine(s, DOP853_E3, STAGES, 6 * system->count, error3);
     for (int32_t i = 0; i < system->count; i++) {
         double reach = system->world->body[system->member[i]].reach;
         for (int c = 0; c < 6; c++) {
-            double e5 = 0, e3 = 0, scale = (c % 3 == 2 ? reach : 1) * (c >= 3 ? VELOCITY_TIME : 1) / allowed;
-            for (int j = 0; j < STAGES; j++) {
-                e5 += DOP853_E5[j] * s->k[j][6 * i + c];
-                e3 += DOP853_E3[j] * s->k[j][6 * i + c];
-            }
+            double scale = (c % 3 == 2 ? reach : 1) * (c >= 3 ? VELOCITY_TIME : 1) / allowed;
+            double e5 = error5[6 * i + c], e3 = error3[6 * i + c];
             fifth += e5 * e5 * scale * scale;
             third += e3 * e3 * scale * scale;
         }
@@ -167,17 +166,42 @@ static void dense(const Smooth *s, int32_t c, double h, double *out) {
     memcpy(out, p, sizeof p);
 }
 
+static Gap gap_of(const System *system, const Contact *c) {
+    return feature_gap(&c->feature, system_placed(system, c->feature.body_a), system_placed(system, c->feature.body_b));
+}
+
+static bool sticks(const Contact *c) { return c->active && c->slide == 0 && c->friction > 0; }
+
+/* What is left of Coulomb's cone for a sticking contact [N].  Contacts of two bodies that stick along one line share their
+ * friction out as it comes: all that it does, and all that is known of it, is its sum. */
+static double cone_left(const Smooth *s, const System *system, const Contact *of, const Gap *gap) {
+    double most = of->friction * of->force, along = of->along_force;
+    for (int32_t k = 0; k < system->contact_count; k++) {
+        const Contact *c = &system->contact[k];
+        const Feature *f = &c->feature, *g = &of->feature;
+        bool same = f->body_a == g->body_a && f->body_b == g->body_b,
+             turned = f->body_a == g->body_b && f->body_b == g->body_a;
+        if (c == of || !sticks(c) || !(same || turned)) continue;
+        Gap other = gap_of(system, c);
+        if (fabs(vcross(other.along, gap->along)) > 1e-6) continue;
+        if (fabs(vdot(vsub(other.point, gap->point), gap->normal)) > 8 * s->slack.gap) continue;
+        double way = vdot(other.along, gap->along);
+        most += c->friction * c->force;
+        along += (same ? way : -way) * c->along_force;
+    }
+    return most - fabs(along);
+}
+
 /* How far a contact is from where its mode ends, in each of three ways: its force would pull; it slips, or its slip comes
  * to rest; its point leaves the side. Negative past it; forces are those last found. */
 static void mode_ends(const Smooth *s, const System *system, const Contact *c, double scale, double ends[3]) {
-    const Feature *f = &c->feature;
-    Gap g = feature_gap(f, system_placed(system, f->body_a), system_placed(system, f->body_b));
+    Gap g = gap_of(system, c);
     ends[0] = c->force / scale + DECISIVE;
     ends[1] = INFINITY;
     if (c->slide != 0)
         ends[1] = c->slide * g.slip + 0.01 * s->slack.speed;
     else if (c->friction > 0)
-        ends[1] = (c->friction * c->force - fabs(c->along_force)) / scale + DECISIVE;
+        ends[1] = cone_left(s, system, c, &g) / scale + DECISIVE;
     ends[2] = g.margin + s->slack.gap;
 }
 
@@ -288,11 +312,8 @@ int smooth_step(Smooth *s, System *system, double from, double *h, Motion *motio
         if (error <= 1 || step < 1e-12) break;
         if (tries == PATIENCE) s->relax = RELAX_MORE;
     }
-    for (int32_t c = 0; c < n; c++) {
-        double sum = 0;
-        for (int j = 0; j < STAGES; j++) sum += DOP853_B[j] * s->k[j][c];
-        s->end[c] = s->start[c] + step * sum;
-    }
+    combine(s, DOP853_B, STAGES, n, s->end);
+    for (int32_t c = 0; c < n; c++) s->end[c] = s->start[c] + step * s->end[c];
     status = derive(s, system, s->end, s->k[STAGES]);
     if (modes_margin(s, system, scale) < 0) broken = fmin(broken, 1);
     for (int i = STAGES + 1; i < ALL_STAGES && status == SIM_OK; i++) status = stage(s, system, i, step);

@@ -150,6 +150,15 @@ Vec contact_point(const System *s, int32_t k) {
     return feature_gap(f, system_placed(s, f->body_a), system_placed(s, f->body_b)).point;
 }
 
+double row_acceleration(const Row *row, const double *acceleration) {
+    double sum = row->bias;
+    for (int i = 0; i < 3; i++) {
+        if (row->a >= 0) sum += row->ja[i] * acceleration[3 * row->a + i];
+        if (row->b >= 0) sum += row->jb[i] * acceleration[3 * row->b + i];
+    }
+    return sum;
+}
+
 double row_speed(const Row *row, const State *state) {
     double speed = 0;
     if (row->a >= 0) {

@@ -18,6 +18,7 @@ typedef struct Contact {
     bool active;               /* presses: its normal row holds */
     double force, along_force; /* the last ones found [N] */
     int unsure;                /* bits of the ends of its mode that were past already when a step began */
+    bool low;                  /* it lifts, but so little that it counts as held */
     double pull;               /* how its gap was being closed when an event came [m/s^2] */
 } Contact;
 
@@ -60,6 +61,7 @@ void system_find_bias(System *system);
 const Placed *system_placed(const System *system,
                             int32_t body); /* of a body of the world; the background is no member */
 
+double row_acceleration(const Row *row, const double *acceleration); /* J a + bias, of 3 numbers a member */
 double row_speed(const Row *row, const State *state);                  /* J v */
 void row_push(const System *system, const Row *row, double impulse);   /* v += M^-1 F' impulse */
 double row_coupling(const System *system, const Row *i, const Row *j); /* J_i M^-1 F_j' */
