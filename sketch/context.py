@@ -15,6 +15,7 @@ from sketch.scoring import Fitted
 __all__ = ["Context"]
 
 Array = NDArray[np.float64]
+Row = list[float]  # of a reading: its least x, least y, greatest x, greatest y and extent [pixels]
 Gaps = dict[tuple[Fitted, Fitted], tuple[float, Array]]  # of open lines: how wide [pixels], and where
 
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
@@ -56,16 +57,15 @@ class Context:
         around = [k for k in chosen if candidates[k].closed or candidates[k].kind == "cross"]
         boxes = np.concatenate([np.empty((0, 4)), *(p.boxes for p in proposed)])
         extents = np.hypot(*(boxes[:, 2:] - boxes[:, :2]).T)
-        bodies = _Bodies(
-            [candidates[k] for k in around], np.column_stack([boxes[around], extents[around]]).tolist()
-        )
+        rows = np.column_stack([boxes, extents]).tolist()
+        bodies = _Bodies([candidates[k] for k in around], [rows[k] for k in around])
         known, self._known = self._known, {}
         out: list[float] = []
         for p, near in zip(proposed, bodies.beside([p.box for p in proposed]), strict=True):
             there = known.get(p)
             its = [bodies.bodies[b] for b in near]
             if there is None or there[0] != its or there[1] != size:
-                own = extents[len(out) : len(out) + len(p.candidates)].tolist()
+                own = rows[len(out) : len(out) + len(p.candidates)]
                 there = its, size, _told(p, own, _Bodies(its, [bodies.rows[b] for b in near]), size)
             self._known[p] = there
             out += there[2]
@@ -78,12 +78,13 @@ class Context:
         return out
 
 
-def _told(proposed: Proposed, extents: list[float], bodies: _Bodies, size: float) -> list[float]:
-    """The gains of one piece's proposals, given how large each is [pixels] and the bodies around them."""
+def _told(proposed: Proposed, rows: list[Row], bodies: _Bodies, size: float) -> list[float]:
+    """The gains of one piece's proposals, given where each is and the bodies around them."""
     gains = list(proposed.gains)
-    for k, (c, extent) in enumerate(zip(proposed.candidates, extents, strict=True)):
+    for k, (c, row) in enumerate(zip(proposed.candidates, rows, strict=True)):
         if gains[k] < -NO_BODY:
             continue
+        extent = row[4]
         if c.closed and extent < DOT * size:  # where the pen rested
             gains[k] -= 0.5 * (math.log(DOT * size / max(extent, 1e-9)) / DOT_SPREAD) ** 2
         if c.kind == "cross":
@@ -92,8 +93,8 @@ def _told(proposed: Proposed, extents: list[float], bodies: _Bodies, size: float
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
         elif c.kind == "bar":
-            gains[k] -= SLIP * (bodies.slip(c, extent) or extent < TWIG * size)
-            gains[k] += NO_BODY * bodies.ground(c)
+            gains[k] -= SLIP * (extent < TWIG * size or bodies.slip(c, extent))
+            gains[k] += NO_BODY * bodies.ground(c, row)
         elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
             gains[k] += ANCHORS
     return gains
@@ -161,22 +162,20 @@ def _dense(line: Array) -> Array:
     return np.asarray((line[:-1] + t * (line[1:] - line[:-1])).reshape(-1, 2))
 
 
-def _extent(outline: Array) -> float:
-    width, height = (outline.max(axis=0) - outline.min(axis=0)).tolist()
-    return math.hypot(width, height)
+def _middle(outline: Array) -> list[float]:
+    """The mean of an outline's corners [pixels]."""
+    middle: list[float] = (np.add.reduce(outline, axis=0) / len(outline)).tolist()
+    return middle
 
 
 class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
-    def __init__(self, bodies: list[Fitted], rows: list[list[float]]) -> None:
-        """rows: of each its least x, least y, greatest x, greatest y and extent [pixels]."""
+    def __init__(self, bodies: list[Fitted], rows: list[Row]) -> None:
         self.bodies = bodies
         self.rows = rows
-        self.extent = [row[4] for row in rows]
-        self.crosses = [
-            (extent, c) for extent, c in zip(self.extent, bodies, strict=True) if c.kind == "cross"
-        ]
+        self.closed = [(body, row) for body, row in zip(bodies, rows, strict=True) if body.closed]
+        self.crosses = [(c, row[4]) for c, row in zip(bodies, rows, strict=True) if c.kind == "cross"]
 
     def beside(self, boxes: list[Box]) -> list[list[int]]:
         """Which bodies can matter to marks in each of these boxes."""
@@ -191,47 +190,45 @@ class _Bodies:
             out[i].append(b)
         return out
 
-    def near(self, x: float, y: float, reach: float, share: float = 0.0) -> list[int]:
-        """Those whose box, widened by `reach` [pixels] and by a share of its own extent, has a point."""
-        out = []
-        for b, (x0, y0, x1, y1, extent) in enumerate(self.rows):
-            r = reach + share * extent
-            if x0 - r <= x <= x1 + r and y0 - r <= y <= y1 + r:
-                out.append(b)
-        return out
-
     def around(self, c: Fitted, reach: float, least: float = 0.0) -> int:
         """How many bodies of other ink, at least so large, have c's centre within them or within `reach`."""
-        x, y = c.outline.mean(axis=0).tolist()
-        mine = set(c.pieces)
-        return sum(
-            self.bodies[b].closed
-            and self.extent[b] > least
-            and mine.isdisjoint(self.bodies[b].pieces)
-            and depth(x, y, self.bodies[b].outline) < reach
-            for b in self.near(x, y, reach)
-        )
+        if not self.closed:
+            return 0
+        (x, y), count = _middle(c.outline), 0
+        for body, (x0, y0, x1, y1, extent) in self.closed:
+            if (
+                x0 - reach <= x <= x1 + reach
+                and y0 - reach <= y <= y1 + reach
+                and extent > least
+                and not set(c.pieces).intersection(body.pieces)
+            ):
+                count += depth(x, y, body.outline) < reach
+        return count
 
     def slip(self, c: Fitted, extent: float) -> bool:
         """Whether an end of c touches the outline of a body of other ink that is twice as large."""
-        mine = set(c.pieces)
-        for x, y in (c.outline[0].tolist(), c.outline[-1].tolist()):
-            for b in self.near(x, y, 0.0, 0.1):
-                large, other = self.extent[b], self.bodies[b]
-                touches = other.closed and abs(depth(x, y, other.outline)) < 0.1 * large
-                if touches and extent < 0.5 * large and mine.isdisjoint(other.pieces):
+        large = [(body, row) for body, row in self.closed if extent < 0.5 * row[4]]
+        for x, y in (c.outline[0].tolist(), c.outline[-1].tolist()) if large else ():
+            for body, (x0, y0, x1, y1, other) in large:
+                r = 0.1 * other
+                if (
+                    x0 - r <= x <= x1 + r
+                    and y0 - r <= y <= y1 + r
+                    and abs(depth(x, y, body.outline)) < r
+                    and not set(c.pieces).intersection(body.pieces)
+                ):
                     return True
         return False
 
-    def ground(self, line: Fitted) -> bool:
+    def ground(self, line: Fitted, row: Row) -> bool:
         """Whether an X of other ink stands on an open line, and on no closed outline."""
-        if not self.crosses:
-            return False
-        mine, dense = set(line.pieces), _dense(line.outline)
-        most = _extent(line.outline) / LARGER
-        for extent, mark in self.crosses:
-            if extent < most and mine.isdisjoint(mark.pieces):
-                off = np.hypot(*(dense - mark.outline.mean(axis=0)).T).min()
-                if off < ON_LINE * extent and not self.around(mark, 0.0):
+        x0, y0, x1, y1, long = row
+        for mark, extent in self.crosses:
+            if extent >= long / LARGER or set(line.pieces).intersection(mark.pieces):
+                continue
+            (x, y), reach = _middle(mark.outline), ON_LINE * extent
+            if x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach:
+                off = np.hypot(*(_dense(line.outline) - (x, y)).T).min()
+                if off < reach and not self.around(mark, 0.0):
                     return True
         return False

@@ -45,7 +45,9 @@ _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _pointer, _pointer, _dou
     ("ink_arrows", _lib)
 )
 _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
-_off_outline = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int)(("ink_off_outline", _lib))
+_off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, _pointer)(
+    ("ink_off_outline", _lib)
+)
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
 _placed = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer, _int, _int)(("ink_placed", _lib))
@@ -255,9 +257,18 @@ def course(points: Array, pen: float) -> Array | None:
     return line if _course(given.ctypes.data, len(given), pen, line.ctypes.data) else None
 
 
-def off_outline(strokes: Strokes, index: int, outline: Array) -> float:
-    """Mean squared distance of a stroke from a closed outline, (n, 2) [pixels]."""
-    return float(_off_outline(strokes.samples.ctypes.data, index, outline.ctypes.data, len(outline)))
+def off_outline(strokes: Strokes, names: Sequence[int], outline: Array) -> list[float]:
+    """Mean squared distances of some strokes from a closed outline, (n, 2) [pixels]."""
+    which, off = np.array(names, dtype=np.int32), np.empty(len(names))
+    _off_outline(
+        strokes.samples.ctypes.data,
+        which.ctypes.data,
+        len(names),
+        outline.ctypes.data,
+        len(outline),
+        off.ctypes.data,
+    )
+    return off.tolist()
 
 
 def place(ink: Array, corners: Array, sides: int, rectangle: bool = False) -> Array | None:

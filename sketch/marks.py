@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -187,21 +186,18 @@ def with_strays(page: Page, mark: Fitted, free: Mapping[int, float]) -> list[Fit
     if mark.figure is None or mark.cost > sum(free[i] for i in mark.pieces):
         return []
     reach = STRAY * math.dist(mark.figure.min(axis=0), mark.figure.max(axis=0))
+    near = [
+        p
+        for p in page.along(mark.figure, reach)
+        if p.index not in mark.pieces and page.apart(p.index, mark.pieces)
+    ]
     costs: dict[int, float] = {}
-    for p in page.along(mark.figure, reach):
-        if p.index in mark.pieces or not page.apart(p.index, mark.pieces):
-            continue
-        off = off_outline(page.strokes, p.stroke, mark.figure)
+    shaft = math.dist(mark.figure[0], mark.figure[1])
+    squares = off_outline(page.strokes, [p.stroke for p in near], mark.figure) if near else []
+    for p, off in zip(near, squares, strict=True):
         cost = PARAMETER + RETRACE * p.observations + misfit_of(p, off, p.extent / 2)
-        shaft = math.dist(mark.figure[0], mark.figure[1])
         if mark.kind == "arrow" and p.extent < 0.6 * shaft and _within(page, p, mark.figure[[1, 2, 4]]):
             cost = min(cost, PARAMETER + HEAD * p.observations)
         if cost < free[p.index]:
             costs[p.index] = cost
-    sets = [tuple(costs), *((j,) for j in costs)] if len(costs) > 1 else [tuple(costs)] if costs else []
-    return [
-        replace(
-            mark, pieces=tuple(sorted((*mark.pieces, *more))), cost=mark.cost + sum(costs[j] for j in more)
-        )
-        for more in sets
-    ]
+    return mark.together(costs)

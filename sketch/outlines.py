@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline
 from sketch.loose import Chain
-from sketch.pieces import Page
+from sketch.pieces import Page, Piece
 from sketch.scoring import PARAMETER, Fitted, misfit
 
 __all__ = ["LEAST_AXIS", "gone_over", "read_outline"]
@@ -93,16 +93,18 @@ def _course(parts: list[Array]) -> Array:
     return np.ascontiguousarray(ring[np.linspace(0, len(ring), COURSE, endpoint=False).astype(int)])
 
 
-def gone_over(page: Page, fitted: Fitted, index: int) -> float:
-    """Nats to say a further piece of ink, given that it runs along a closed outline that is there already.
+def gone_over(page: Page, fitted: Fitted, pieces: Sequence[Piece]) -> list[float]:
+    """Nats to say each of some further pieces of ink, given that it runs along a closed outline that is there already.
 
-    Sides are drawn twice, in pieces that overlap, or gone over once more. Infinite where the piece lies
-    elsewhere.
+    Sides are drawn twice, in pieces that overlap, or gone over once more.
     """
-    piece = page.pieces[index]
-    scale = min(fitted.scale, max(piece.scale, 1e-9))
-    off = off_outline(page.strokes, piece.stroke, fitted.outline)
-    return PARAMETER + RETRACE * piece.observations + misfit(off / scale**2, piece.observations)
+    off = off_outline(page.strokes, [p.stroke for p in pieces], fitted.outline)
+    return [
+        PARAMETER
+        + RETRACE * p.observations
+        + misfit(square / min(fitted.scale, max(p.scale, 1e-9)) ** 2, p.observations)
+        for p, square in zip(pieces, off, strict=True)
+    ]
 
 
 def _round(fit: ClosedFit, fitted: Callable[..., Fitted], gaps: float) -> list[Fitted]:

@@ -64,6 +64,7 @@ def _error(page: Page, c: Fitted) -> float:
         square = sum(p.length * float(np.mean(d * d)) for p, d in zip(pieces, off, strict=True)) / length
     else:
         around = c.outline if c.closed else np.concatenate([c.outline, c.outline[-2:0:-1]])  # forth and back
-        square = sum(p.length * off_outline(page.strokes, p.stroke, around) for p in pieces) / length
+        off2 = off_outline(page.strokes, [p.stroke for p in pieces], around)
+        square = sum(p.length * d for p, d in zip(pieces, off2, strict=True)) / length
     parameters = {"circle": 3, "ellipse": 5, "rectangle": 5}.get(c.kind, 2 * len(c.outline))
     return math.sqrt(square * parameters / max(sum(p.observations for p in pieces), parameters))

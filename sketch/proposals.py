@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Sequence, Set
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import accumulate
 
@@ -239,21 +239,14 @@ def _again(page: Page, found: list[Fitted], free: dict[int, float]) -> list[Fitt
     best = min(found, key=lambda f: f.cost)
     if best.cost > sum(free[i] for i in best.pieces):
         return []
-    costs: dict[int, float] = {}
-    for p in page.along(best.outline, 0.3 * best.scale):
-        if p.index in best.pieces or not page.apart(p.index, best.pieces):
-            continue
-        cost = gone_over(page, best, p.index)
-        if cost < free[p.index]:
-            costs[p.index] = cost
-    sets = [tuple(costs)] if costs else []
-    if len(costs) > 1:
-        sets += [(j,) for j in costs]
-    return [
-        replace(f, pieces=tuple(sorted((*f.pieces, *more))), cost=f.cost + sum(costs[j] for j in more))
-        for f in found
-        for more in sets
+    near = [
+        p
+        for p in page.along(best.outline, 0.3 * best.scale)
+        if p.index not in best.pieces and page.apart(p.index, best.pieces)
     ]
+    said = gone_over(page, best, near) if near else []
+    costs = {p.index: cost for p, cost in zip(near, said, strict=True) if cost < free[p.index]}
+    return [together for f in found for together in f.together(costs)]
 
 
 def _around(boxes: list[Box]) -> Box:

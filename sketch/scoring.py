@@ -10,6 +10,7 @@ Each constant has a meaning; they were set by looking at drawings of many writer
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -59,6 +60,17 @@ class Fitted:
     @property
     def closed(self) -> bool:
         return self.scale > 0
+
+    def together(self, costs: Mapping[int, float]) -> list[Fitted]:
+        """The same with further pieces that it explains too, given what each costs: with all, or with one of them."""
+        sets = [tuple(costs), *((j,) for j in costs)] if len(costs) > 1 else [tuple(costs)] if costs else []
+        own = self.outline, self.scale, self.narrow, self.gap, self.rough, self.figure
+        return [
+            Fitted(
+                self.kind, tuple(sorted((*self.pieces, *more))), self.cost + sum(costs[j] for j in more), *own
+            )
+            for more in sets
+        ]
 
 
 def unread(piece: Piece) -> float:

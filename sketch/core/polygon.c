@@ -18,17 +18,27 @@ INK_API int32_t ink_is_simple(const double *v, int32_t n) {
     return 1;
 }
 
-/* Mean squared distance of stroke `name` from a closed outline, (n, 2) [pixels]. */
-INK_API double ink_off_outline(const double *samples, int32_t name, const double *outline, int32_t n) {
-    double sum = 0;
-    for (int i = 0; i < SAMPLES; i++) {
-        const double *p = samples + 2 * (SAMPLES * name + i);
-        double best = INFINITY;
-        for (int q = 0; q < n; q++)
-            best = fmin(best, segment_distance2(p[0], p[1], outline + 2 * q, outline + 2 * ((q + 1) % n)));
-        sum += best;
+/* Mean squared distances of `count` strokes, those with these names, from a closed outline, (n, 2) [pixels]. */
+INK_API void ink_off_outline(const double *samples, const int32_t *names, int32_t count, const double *outline,
+                             int32_t n, double *off) {
+    for (int k = 0; k < count; k++) {
+        const double *p = samples + 2 * SAMPLES * names[k];
+        double best[SAMPLES], sum = 0;
+        for (int i = 0; i < SAMPLES; i++) best[i] = INFINITY;
+        for (int q = 0; q < n; q++) {
+            const double *a = outline + 2 * q, *b = outline + 2 * ((q + 1) % n);
+            double dx = b[0] - a[0], dy = b[1] - a[1], l2 = dx * dx + dy * dy, per = l2 > 0 ? 1 / l2 : 0;
+            for (int i = 0; i < SAMPLES; i++) {
+                double x = p[2 * i] - a[0], y = p[2 * i + 1] - a[1], t = (x * dx + y * dy) * per;
+                t = t < 0 ? 0 : t > 1 ? 1 : t;
+                x -= t * dx;
+                y -= t * dy;
+                best[i] = x * x + y * y < best[i] ? x * x + y * y : best[i];
+            }
+        }
+        for (int i = 0; i < SAMPLES; i++) sum += best[i];
+        off[k] = sum / SAMPLES;
     }
-    return sum / SAMPLES;
 }
 
 /* Distance of a point from a closed outline [pixels], negative inside (even-odd rule). */
