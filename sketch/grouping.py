@@ -10,9 +10,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sketch.kernel import Shaft
+from sketch.kernel import Point, Shaft
 from sketch.loose import Chain
-from sketch.pieces import Array, Page, Piece, Point
+from sketch.pieces import Array, Page, Piece
 
 __all__ = ["closing_chains", "closing_ink", "crosses", "shafts"]
 
@@ -23,7 +23,9 @@ WIDE = 0.1  # of a chain's ink
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
 DETOUR = 1.5  # of that distance: the longest way over other ink
-HEADS = 4  # strokes near a shaft's end that are tried as its head
+HEAD_REACH = 0.5  # of a shaft: as near to its tip as its head comes,
+HEAD_SPAN = 1.2  # as far from it as it goes,
+HEAD_SIZE = 2.0  # and as large as it is
 
 
 def closing_chains(page: Page, start: int) -> list[Chain]:
@@ -97,27 +99,12 @@ def shafts(page: Page, p: Piece) -> Iterator[Shaft]:
         ends, heads = ((_point(v[0]), _point(v[1])), (_point(v[2]), _point(v[1]))), (1, 1)
     else:
         ends, heads = (p.ends, (p.ends[1], p.ends[0])), (1, 2)
-    for tail, tip in ends:
-        near = _heads(page, p, tip)
-        if near:
-            yield Shaft((p.index, *near), heads, tail, tip)
+    reach, span, size = HEAD_REACH * p.length, HEAD_SPAN * p.length, HEAD_SIZE * p.length
+    near = page.heads(p, (ends[0][1], ends[1][1]), reach, span, size)
+    for (tail, tip), those in zip(ends, near, strict=True):
+        if those:
+            yield Shaft((p.index, *those), heads, tail, tip)
 
 
 def _point(v: list[float]) -> Point:
     return v[0], v[1]
-
-
-def _heads(page: Page, shaft: Piece, tip: Point) -> list[int]:
-    """The pieces nearest to a shaft's tip that are small enough to be its head."""
-    reach, span = 0.5 * shaft.length, 1.2 * shaft.length
-    x, y = tip
-    found = []
-    for q in page.touching(x - reach, y - reach, x + reach, y + reach):
-        x0, y0, x1, y1 = q.box
-        if max(x - x0, y - y0, x1 - x, y1 - y) >= span or q is shaft or q.extent > 2 * shaft.length:
-            continue
-        apart = np.abs(q.complex - complex(x, y)).tolist()
-        closest = min(apart)
-        if closest < reach and max(apart) < span and page.apart(q.index, (shaft.index,)):
-            found.append((closest, q.index))
-    return [j for _, j in sorted(found)[:HEADS]]

@@ -16,6 +16,7 @@ __all__ = [
     "SIDES",
     "ArrowFit",
     "ClosedFit",
+    "Point",
     "Shaft",
     "Strokes",
     "course",
@@ -23,6 +24,7 @@ __all__ = [
     "depth",
     "fit_arrows",
     "fit_closed",
+    "heads",
     "is_simple",
     "joined",
     "measure",
@@ -34,7 +36,7 @@ Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
-COURSE = 32  # as in core/course.c
+COURSE, HEADS = 32, 4  # as in core/course.c and core/heads.c
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 7)(
@@ -43,6 +45,9 @@ _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_po
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
 _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _pointer, _pointer, _double, _pointer, _pointer)(
     ("ink_arrows", _lib)
+)
+_heads = ctypes.CFUNCTYPE(None, _int, *[_pointer] * 5, _int, _pointer, *[_double] * 3, _pointer, _pointer)(
+    ("ink_heads", _lib)
 )
 _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
 _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, _pointer)(
@@ -237,6 +242,25 @@ def fit_arrows(
         head = np.array(v[:6]).reshape(3, 2)
         found.append(ArrowFit(strokes_of, shafts[g].tail, head, v[6:9], v[11], v[12:15], v[15], v[16:]))
     return found
+
+
+def heads(
+    ink: tuple[Array, Array, NDArray[np.int64]],
+    rivals: tuple[int | None, int | None],
+    shaft: int,
+    tips: tuple[Point, Point],
+    limits: tuple[float, float, float],
+) -> tuple[list[int], list[int]]:
+    """The pieces that may be a shaft's head, for each of two tips, the nearest first (see core/heads.c).
+
+    ink: of all pieces their boxes, measures and points.  limits: reach, span and size [pixels].
+    """
+    given, out = np.array(tips), np.empty(2 * HEADS + 2, dtype=np.int32)
+    at = out.ctypes.data
+    of = [part.ctypes.data for part in ink]
+    _heads(len(ink[0]), *of, *rivals, shaft, given.ctypes.data, *limits, at, at + 8 * HEADS)
+    *near, first, second = out.tolist()
+    return near[:first], near[HEADS : HEADS + second]
 
 
 def cuts(points: Array) -> tuple[list[float], list[int]]:

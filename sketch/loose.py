@@ -29,6 +29,7 @@ class LooseEnds:
     """The ends of all pieces, which of them are loose, and the nearest others of those that were asked for.
 
     Attributes:
+        rivals: where they are for the library, as of ink_apart.
         at: (2 * pieces, 2) [pixels].  length: of their pieces [pixels].  loose: whether chains go through them.
     """
 
@@ -42,6 +43,8 @@ class LooseEnds:
         self._gap = np.empty((0, CHOICES))
         self._rivals = np.array([j for others in rivals for j in sorted(others)], dtype=np.int32)
         self._from = np.fromiter(accumulate(map(len, rivals), initial=0), dtype=np.int32)
+        known = len(self._rivals) > 0
+        self.rivals = (self._rivals.ctypes.data, self._from.ctypes.data) if known else (None, None)
         self._links = np.empty((MOST_STEPS, MOST_PARTS), dtype=np.int32)
         self._parts, self._asked = (
             np.empty(MOST_STEPS, dtype=np.int32),
@@ -61,9 +64,12 @@ class LooseEnds:
         self._count = np.concatenate([self._count, np.full(new, UNKNOWN, dtype=np.int32)])
         self._near = np.concatenate([self._near, np.zeros((new, CHOICES), dtype=np.int32)])
         self._gap = np.concatenate([self._gap, np.zeros((new, CHOICES))])
-        rivals = (self._rivals.ctypes.data, self._from.ctypes.data) if len(self._rivals) else (None, None)
         given = [array.ctypes.data for array in (self.at, self.length, self.loose)]
-        self._of = [*given, *rivals, *(array.ctypes.data for array in (self._count, self._near, self._gap))]
+        self._of = [
+            *given,
+            *self.rivals,
+            *(array.ctypes.data for array in (self._count, self._near, self._gap)),
+        ]
 
     def loosen(self, piece: int) -> set[End]:
         """Let chains go through a piece. Returns the ends whose neighbours are others now."""

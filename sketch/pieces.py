@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.ink import Sketch
-from sketch.kernel import joined, measure
+from sketch.kernel import Point, heads, joined, measure
 from sketch.loose import Chain, End, LooseEnds
 from sketch.scoring import unread
 
@@ -24,7 +24,6 @@ ASTRAY = 0.3  # of a piece's size: ink further off than this does not run along 
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
 Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,11 +72,6 @@ class Piece:
         """Nats to say its ink freely."""
         return unread(self)
 
-    @cached_property
-    def complex(self) -> NDArray[np.complex128]:
-        """Its points as complex numbers, x + iy."""
-        return self.points.view(np.complex128)[:, 0]
-
     def line(self, k: int) -> Array:
         """Its best polyline of k segments [pixels], (k + 1, 2)."""
         return np.array(self.vertices[k][: k + 1])
@@ -119,6 +113,7 @@ class Page:
         self.looked = Looked()
         self._dot = 0.0
         self._boxes = np.empty((0, 4))
+        self._points = np.empty((0, 2), dtype=np.int64)  # of each piece where its points are, and how many
 
     def add(self, strokes: list[Array]) -> range:
         """Measure further strokes, each (n, 2) in pixels; returns their indices."""
@@ -129,6 +124,9 @@ class Page:
         count = len(strokes)
         self._boxes = np.concatenate([self._boxes, np.full((count, 4), np.nan)])
         ends = np.zeros((count, 2, 2))
+        begins = np.concatenate([[0], new.ends[:-1]])[:count]
+        places = np.stack([new.points.ctypes.data + 16 * begins, new.ends - begins], axis=1)
+        self._points = np.concatenate([self._points, places])
         residuals, vertices = new.residual.tolist(), new.vertices.tolist()
         for k, m in enumerate(new.measure.tolist()):
             if m[0] > 0:
@@ -201,6 +199,15 @@ class Page:
         b = self._boxes
         inside = (b[:, 0] <= x1) & (b[:, 1] <= y1) & (b[:, 2] >= x0) & (b[:, 3] >= y0)
         return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
+
+    def heads(
+        self, shaft: Piece, tips: tuple[Point, Point], reach: float, span: float, size: float
+    ) -> tuple[list[int], list[int]]:
+        """For each of its tips the pieces that may be a shaft's head, the nearest first: those that come within
+        `reach` of it, go no further than `span`, and are no larger than `size` [pixels]."""
+        self.looked.boxes += [(x - reach, y - reach, x + reach, y + reach) for x, y in tips]
+        ink = self._boxes, self.strokes.measure, self._points
+        return heads(ink, self.ends.rivals, shaft.index, tips, (reach, span, size))
 
     def chains(self, start: int) -> list[tuple[float, float, Chain]]:
         """As of `LooseEnds.chains`."""

@@ -35,12 +35,14 @@ typedef struct {
     Chain way, best[MOST_STEPS];
 } Search;
 
-static int apart(const Search *s, int i, int j) {
-    if (!s->from) return 1;
-    for (int r = s->from[i]; r < s->from[i + 1]; r++)
-        if (s->rivals[r] == j) return 0;
+int ink_apart(const int32_t *rivals, const int32_t *from, int i, int j) {
+    if (!from) return 1;
+    for (int r = from[i]; r < from[i + 1]; r++)
+        if (rivals[r] == j) return 0;
     return 1;
 }
+
+static int apart(const Search *s, int i, int j) { return ink_apart(s->rivals, s->from, i, j); }
 
 /* The nearest ends of other loose pieces that a chain may go on to from an end. */
 static void look_around(Search *s, int end) {
