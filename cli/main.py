@@ -55,7 +55,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     restore = _terminate_as_interrupt()
     try:
         wanted = next((word for word in arguments if not word.startswith("-")), "")
-        options = build_parser(wanted).parse_args(arguments)
+        options, unknown = build_parser(wanted).parse_known_args(arguments)
+        if unknown:
+            words = " ".join(unknown)
+            raise UsageError(f"unrecognized arguments: {words}", f"`sketchsim {wanted} --help` lists the options")
         status: int = options.run(options)
         sys.stdout.flush()
         return status
