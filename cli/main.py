@@ -58,7 +58,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         options, unknown = build_parser(wanted).parse_known_args(arguments)
         if unknown:
             words = " ".join(unknown)
-            raise UsageError(f"unrecognized arguments: {words}", f"`sketchsim {wanted} --help` lists the options")
+            raise UsageError(
+                f"unrecognized arguments: {words}", f"`sketchsim {wanted} --help` lists the options"
+            )
         status: int = options.run(options)
         sys.stdout.flush()
         return status
