@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -22,6 +23,8 @@ MOST_SIDES = 12
 ROUND = 39.5  # nats that a round outline is rarer than its three parameters say
 CORNER = 4.0  # nats to say a corner's coordinate, given those before: less than a free parameter
 USUAL = {3: 2.0, 4: 4.0}  # nats that triangles and quadrilaterals are commoner than other polygons
+IRREGULAR = 6.0  # nats that a quadrilateral is rarer of which no two sides are parallel,
+ALIKE = 0.1  # to within this [rad]
 BOX = 17.0  # nats to say a rectangle: five parameters, and that it is the commonest thing drawn
 UNROUND = 0.085  # usual log of a drawn circle's length over its width: nobody's circles are round
 ELLIPSE = 11.0  # nats that an ellipse takes beyond a circle: two parameters, and that it is rarer
@@ -60,9 +63,12 @@ def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fi
     scale, narrow = math.sqrt(abs(p * s - q * r)), min(math.hypot(p, r), math.hypot(q, s))
     fitted = partial(Fitted, pieces=names, scale=scale, narrow=narrow, gap=fit.gap / fit.ink)
     out = _round(fit, fitted, gaps)
-    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + _SAID[k])
+    said = _SAID.copy()
+    if math.isfinite(fit.cost[4]):
+        said[4] += min(0.5 * (_unlike(fit.vertices(4)) / ALIKE) ** 2, IRREGULAR)
+    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + said[k])
     if math.isfinite(fit.cost[sides]):
-        cost = fit.cost[sides] + _SAID[sides] + gaps
+        cost = fit.cost[sides] + said[sides] + gaps
         out.append(fitted("polygon", cost=cost, outline=fit.vertices(sides), rough=fit.cost[sides]))
     box = _rectangle(fit) if math.isfinite(fit.cost[4]) else None
     if box is not None:
@@ -78,6 +84,12 @@ def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fi
         if course is not None and is_simple(course):
             out.append(fitted("free", cost=bent, outline=course))
     return out
+
+
+def _unlike(corners: Array) -> float:
+    """The least angle between opposite sides of a quadrilateral [rad]."""
+    a, b, c, d = (complex(x, y) for x, y in corners.tolist())
+    return min(abs(cmath.phase((q - p) * (r - s).conjugate())) for p, q, r, s in ((a, b, c, d), (b, c, d, a)))
 
 
 def _course(parts: list[Array]) -> Array:
