@@ -32,6 +32,7 @@ from sketch.pieces import Page
 from sketch.placing import Placed, placed
 from sketch.proposals import Proposals, Proposed, proposing
 from sketch.reading import Reading, scored
+from sketch.sampling import sampled
 from sketch.scoring import Fitted
 from sketch.search import Solved, best_packing
 
@@ -43,7 +44,6 @@ SAME_PLACE = 0.2  # of a body's size: outlines nowhere further apart are one bod
 KINDS = {"ellipse": "polygon", "free": "polygon", "cross": "anchor", "arrow": "gravity"}
 FORCED = 1e6  # nats that a reading gains by having been said by the caller
 MANY = 8  # sides from which on nobody counts them
-ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +110,7 @@ class Recognizer:
         return self._add([stroke])[0]
 
     def _add(self, strokes: list[Stroke]) -> range:
-        things = [things_in(_thinned(s.points)) for s in strokes]
+        things = [things_in(sampled(s.points)) for s in strokes]
         new = iter(self._proposals.add([part for parts in things for part in parts]))
         keys = range(self._count, self._count + len(strokes))
         self._count = keys.stop
@@ -174,16 +174,6 @@ class Recognizer:
         likely = _best(candidates, gains, self._alone)
         gains = self._context.gains(proposed, candidates, likely, self._proposals.page.size)
         return candidates, gains, _one_a_place(candidates, gains, _best(candidates, gains, self._together))
-
-
-def _thinned(points: Array) -> Array:
-    """A stroke's points, of very many those at least a share of its length apart."""
-    if len(points) <= 2 * ENOUGH:
-        return points
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    step = np.floor(along * (ENOUGH / max(along[-1], 1e-9)))
-    kept = np.flatnonzero(np.diff(step, prepend=-1.0))
-    return np.asarray(points[np.append(kept, len(points) - 1)])
 
 
 def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> list[Proposed]:

@@ -1,0 +1,125 @@
+"""Strokes of very many points, and of very few: what their points say of the course of the ink."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["sampled"]
+
+Array = NDArray[np.float64]
+
+ENOUGH = 4000  # points of a stroke: more say nothing further about its course
+FEW = 24  # points of a stroke: in more a corner that lies between two of them is hardly cut
+FULL = 0.95  # of the usual step: a chord that is longer is straight
+STEPS = 3  # full chords, at least, and a third of all: else the points are not in equal steps
+AGREE = 0.3  # of a step: as near as a corner lies that is reckoned from either side
+HAIRPIN, TIP = 1.9, 0.1  # where it turns by more [rad], and the two are further apart, it turns twice
+MEET = 0.4  # of a step: but where the two ways meet about a step on, it is one sharp corner
+SHORT = 0.72, 0.9  # of a step: a chord of such a length has a corner, and not two
+TURN, SPIKE = 0.35, 2.7  # rad: what turns by less is no corner, and by more none that one side alone can tell
+
+
+def sampled(points: Array) -> Array:
+    """A stroke's points, (n, 2) [pixels]: of very many some, and very few with the corners that they cut."""
+    if len(points) > 2 * ENOUGH:
+        return _thinned(points)
+    return _sharpened(points) if 4 < len(points) <= FEW else points
+
+
+def _thinned(points: Array) -> Array:
+    """Of very many points those at least a share of their stroke's length apart."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    step = np.floor(along * (ENOUGH / max(along[-1], 1e-9)))
+    kept = np.flatnonzero(np.diff(step, prepend=-1.0))
+    return np.asarray(points[np.append(kept, len(points) - 1)])
+
+
+def _sharpened(points: Array) -> Array:
+    """Few points in equal steps of length along the ink, with the corners that lie between two of them.
+
+    The step s says how long the ink between two points is; where these are nearer, at a distance d, it turns.
+    At one corner, if it comes straight from the point before: with the chord's angle f to that way, the corner is
+    t = (s² - d²) / (2 (s - d cos f)) on, as the two legs make s together (law of cosines). The same holds
+    backwards from the point behind; a corner is where both agree.
+    """
+    at = [complex(x, y) for x, y in points.tolist()]
+    chords = [b - a for a, b in pairwise(at)]
+    lengths = [abs(c) for c in chords]
+    step = max(lengths)
+    full = [d > FULL * step for d in lengths]
+    if sum(full) < max(STEPS, len(chords) / 3) or min(lengths) <= 0:
+        return points
+    step = sum(d for d in lengths if d > FULL * step) / sum(d > FULL * step for d in lengths)
+    # where the ink comes from and goes on to at a point, as far as that is known: the other end of a straight leg
+    before = [at[k - 1] if k and full[k - 1] else None for k in range(len(at))]
+    behind = [at[k + 1] if k < len(chords) and full[k] else None for k in range(len(at))]
+    corners: dict[int, tuple[complex, ...]] = {}
+    for sides in (2, 2, 1, 1):  # first where both say the same
+        for k in range(len(chords)):
+            if full[k] or k in corners:
+                continue
+            a, b = at[k], at[k + 1]
+            found = _corners(before[k], a, b, behind[k + 1], step, sides)
+            if found:
+                corners[k], before[k + 1], behind[k] = found, found[-1], found[0]
+    for k, d in enumerate(
+        lengths
+    ):  # where neither says whence: halfway, to the side that the ink goes around
+        if 0 < k < len(chords) - 1 and k not in corners and SHORT[0] * step < d < SHORT[1] * step:
+            turns = [(chords[j].conjugate() * chords[j + 1]).imag for j in (k - 1, k)]
+            if turns[0] * turns[1] > 0:
+                off = math.sqrt(step * step - d * d) / 2
+                side = -1j if turns[0] > 0 else 1j
+                corners[k] = ((at[k] + at[k + 1]) / 2 + off * side * chords[k] / d,)
+    out = []
+    for k, z in enumerate(at):
+        out.append(z)
+        out += corners.get(k, ())
+    return np.array([[z.real, z.imag] for z in out])
+
+
+def _corners(
+    before: complex | None, a: complex, b: complex, behind: complex | None, step: float, sides: int
+) -> tuple[complex, ...]:
+    """The corners between two points, a way of `step` apart, as reckoned from so many sides; mostly none.
+
+    before, behind: where the ink comes from to the first, and goes on to from the second, if that is known.
+    """
+    found = [c for c in (_corner(before, a, b, step), _corner(behind, b, a, step)) if c is not None]
+    if len(found) < sides:
+        return ()
+    if before is not None and behind is not None:
+        come, go = (a - before) / abs(a - before), (behind - b) / abs(behind - b)
+        sine = (come.conjugate() * go).imag
+        if abs(cmath.phase(go * come.conjugate())) > HAIRPIN and abs(found[0] - found[-1]) > TIP * step:
+            legs = [((b - a).conjugate() * go).imag, (come.conjugate() * (b - a)).imag]
+            legs = [leg / sine if sine else -1.0 for leg in legs]
+            if min(legs) >= 0 and abs(sum(legs) - step) < MEET * step:
+                return (a + legs[0] * come,)
+            # two corners, the end of something narrow: straight across, where both ways and it make a step
+            out = (come - go) / abs(come - go)
+            chord = (b - a) * out.conjugate()
+            rest = (step - abs(chord.imag) - chord.real) / 2
+            if not 0 <= rest <= step:
+                return ()
+            return a + (rest + chord.real) * out, b + rest * out
+    corner = sum(found) / len(found)
+    if abs(found[0] - found[-1]) > AGREE * step:
+        return ()
+    turn = abs(cmath.phase((b - corner) * (corner - a).conjugate()))
+    return (corner,) if turn > TURN and (len(found) == 2 or turn < SPIKE) else ()
+
+
+def _corner(before: complex | None, a: complex, b: complex, step: float) -> complex | None:
+    """The corner between two points, a way of `step` apart, where the ink comes straight from `before` to the first."""
+    if before is None or before == a:
+        return None
+    way = (a - before) / abs(a - before)
+    chord = b - a
+    d, along = abs(chord), (chord * way.conjugate()).real
+    return None if step <= along else a + way * (step * step - d * d) / (2 * (step - along))

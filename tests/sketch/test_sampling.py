@@ -1,0 +1,73 @@
+"""Strokes of few points: corners that lie between two of them come back, and nothing else does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pages import box, kinds, ngon, read
+
+from sketch.sampling import sampled
+from sketch.synthetic import HANDS, circle, outline
+
+
+def in_steps(path: np.ndarray, count: int) -> np.ndarray:
+    """So many points along a path, (n, 2), at equal distances."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    t = np.linspace(0, along[-1], count)
+    return np.stack([np.interp(t, along, path[:, k]) for k in (0, 1)], axis=1)
+
+
+def closed(corners: list[tuple[float, float]], start: float) -> np.ndarray:
+    """Once around a polygon, begun at a share of its first side."""
+    ring = np.array([*corners, corners[0]])
+    first = ring[0] + start * (ring[1] - ring[0])
+    return np.concatenate([[first], ring[1:], [first]])
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(
+    start=st.floats(0.0, 0.9),
+    wide=st.floats(1.0, 2.2),
+    turn=st.floats(0, 6.2),
+)
+def test_the_cut_corners_of_a_box_come_back(start: float, wide: float, turn: float) -> None:
+    corners = box(400, 300, 160 * wide, 160, turn)
+    few = in_steps(closed(corners, start), 10)
+    assert kinds(read([few])) == ["4-gon"]
+    more = sampled(few)
+    for corner in corners[1:]:  # a corner right beside a point may be that point
+        assert np.hypot(*(more - corner).T).min() < 0.12 * 160
+
+
+def test_a_sharp_corner_is_one_and_the_end_of_a_bar_two() -> None:
+    wedge = [(100.0, 400.0), (600.0, 400.0), (100.0, 200.0)]
+    beam = box(500, 300, 800, 60)
+    for start in np.linspace(0, 0.9, 10):
+        assert kinds(read([in_steps(closed(wedge, start), 10)])) == ["3-gon"]
+        assert kinds(read([in_steps(closed(beam, start), 10)])) == ["4-gon"]
+
+
+@pytest.mark.parametrize("hand", ["neat", "quick", "shaky"])
+def test_ten_points_of_a_circle_are_a_circle(hand: str) -> None:
+    for seed in range(10):
+        ring = circle((400, 300), 90, HANDS[hand], np.random.default_rng(seed))
+        assert kinds(read([in_steps(s, 10) for s in ring])) == ["circle"]
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(seed=st.integers(0, 10**6), count=st.integers(5, 24))
+def test_points_in_unequal_steps_stay_as_they_are(seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    points = np.cumsum(rng.normal(0, 30, (count, 2)), axis=0)
+    steps = np.sort(np.hypot(*np.diff(points, axis=0).T))
+    if (steps > 0.95 * steps[-1]).sum() < max(3, (count - 1) / 3):
+        assert np.array_equal(sampled(points), points)
+
+
+def test_many_points_are_thinned_and_others_kept() -> None:
+    hexagon = outline(ngon(6, 300, 300, 100), HANDS["neat"], np.random.default_rng(1))[0]
+    assert np.array_equal(sampled(hexagon), hexagon)
+    long = in_steps(closed(box(0, 0, 300, 200), 0.3), 100_000)
+    assert len(sampled(long)) < 5000
