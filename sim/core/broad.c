@@ -8,11 +8,12 @@
 int sweep_create(Sweep *sweep, int32_t count) {
     size_t n = (size_t)count + 1;
     *sweep = (Sweep){.count = count, .pair_capacity = 4 * count + 64};
-    sweep->order = malloc(n * sizeof *sweep->order);
+    sweep->order = malloc(2 * n * sizeof *sweep->order);
     sweep->low = malloc(4 * n * sizeof *sweep->low);
     sweep->moving = malloc(n * sizeof *sweep->moving);
     sweep->pair = malloc((size_t)sweep->pair_capacity * sizeof *sweep->pair);
     if (!sweep->order || !sweep->low || !sweep->moving || !sweep->pair) return SIM_OUT_OF_MEMORY;
+    sweep->met = sweep->order + n;
     sweep->high = sweep->low + n;
     sweep->across_low = sweep->low + 2 * n;
     sweep->across_high = sweep->low + 3 * n;
@@ -108,14 +109,18 @@ int sweep_pairs(Sweep *sweep, const Box *box, const bool *moving) {
         int32_t end = k + 1, i = sweep->order[k];
         while (end < count && lows[end] <= high) end++;
         if (pair_room(sweep, end - k) != SIM_OK) return SIM_OUT_OF_MEMORY;
-        Pair *pair = sweep->pair + sweep->pair_count;
+        int32_t *met = sweep->met, count_met = 0;
         for (int32_t l = k + 1; l < end;
-             l++) { /* every one is written, and kept by counting it: no branch to mispredict */
-            int32_t j = sweep->order[l];
-            *pair = (Pair){i < j ? i : j, i < j ? j : i};
-            pair += (lows_across[l] <= high_across) & (highs_across[l] >= low_across) & (moves[k] | moves[l]);
+             l++) { /* every one is noted, and kept by counting it: no branch to mispredict */
+            met[count_met] = l;
+            count_met += (lows_across[l] <= high_across) & (highs_across[l] >= low_across) & (moves[k] | moves[l]);
         }
-        sweep->pair_count = (int32_t)(pair - sweep->pair);
+        Pair *pair = sweep->pair + sweep->pair_count;
+        for (int32_t l = 0; l < count_met; l++) {
+            int32_t j = sweep->order[met[l]];
+            pair[l] = (Pair){i < j ? i : j, i < j ? j : i};
+        }
+        sweep->pair_count += count_met;
     }
     return SIM_OK;
 }

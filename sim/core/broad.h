@@ -35,6 +35,7 @@ typedef struct Pair {
 typedef struct Sweep {
     int32_t count;
     int32_t *order;      /* boxes by their lower end, kept from call to call: nearly sorted the next time */
+    int32_t *met;        /* places in that order that one box meets */
     double *low, *high;  /* along the axis, in that order */
     double *across_low, *across_high; /* along the other one */
     bool *moving;

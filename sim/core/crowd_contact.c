@@ -28,10 +28,6 @@ static void fill_friction(Contact *c, Vec ra, Vec rb) {
                      c->inverse_moment_b * c->spin_tb * c->spin_tb);
 }
 
-double contact_reach(const World *world, int32_t piece_a, int32_t piece_b) {
-    return smaller(world->shape[world->piece[piece_a].shape].reach, world->shape[world->piece[piece_b].shape].reach);
-}
-
 /* The points of a contact from its manifold, with the impulses that the same points had in `old`. */
 void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Record *old) {
     const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
@@ -107,7 +103,7 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     static const double SLACK = 0.05, SLOP = 0.005, FINE = 3e-3, ROLLING = 1e-2;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
-    double reach = contact_reach(world, near->piece_a, near->piece_b);
+    double reach = contact_reach(crowd, near->piece_a, near->piece_b);
     int32_t i = crowd->rows.count++;
     Contact *c = &crowd->rows.contact[i];
     crowd->rows.ends[i] = (Ends){near->a, near->b, KIND_OPEN};

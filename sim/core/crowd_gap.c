@@ -22,9 +22,7 @@ static inline Two gap_between(const Contact *c, const Mover *a, const Mover *b) 
 
 Two gap_now(const Contact *c, const Mover *a, const Mover *b) { return gap_between(c, a, b); }
 
-static inline void set_limit(Contact *c, Two gap, double inverse_dt) {
-    c->limit = (Two){larger(gap[0], 0), larger(gap[1], 0)} * both(-inverse_dt);
-}
+static inline void set_limit(Contact *c, Two gap, double inverse_dt) { c->limit = positive(gap) * both(-inverse_dt); }
 
 void gap_limit(Contact *contact, int32_t count, const Mover *mover, double dt) {
     for (int32_t i = 0; i < count; i++) {
@@ -52,16 +50,22 @@ static bool foresee(Contact *c, const Mover *a, const Mover *b, double dt) {
 
 bool gap_foresee(Rows *rows, const Mover *mover, const int32_t *active, int32_t active_count, double dt) {
     static const double FAST = 0.03; /* [rad] in the substep */
-    double fast = FAST / dt, fastest = 0;
-    for (int32_t k = 0; k < active_count; k++) fastest = larger(fastest, fabs(mover[active[k]].spin));
-    if (fastest < fast) return false;
-    bool any = false;
+    bool spins = false, any = false;
+    for (int32_t k = 0; k < active_count; k++) {
+        rows->whirls[active[k]] = fabs(mover[active[k]].spin) * dt >= FAST;
+        spins |= rows->whirls[active[k]];
+    }
+    if (!spins) return false;
+    int32_t count = 0;
     for (int32_t i = 0; i < rows->count; i++) {
-        const Mover *a = &mover[rows->ends[i].a], *b = &mover[rows->ends[i].b];
-        if ((fabs(a->spin) < fast) & (fabs(b->spin) < fast)) continue;
-        if (!foresee(&rows->contact[i], a, b, dt)) continue;
-        rows_heat(rows, mover, rows->ends[i].a, true);
-        rows_heat(rows, mover, rows->ends[i].b, true);
+        rows->list[count] = i;
+        count += rows->whirls[rows->ends[i].a] | rows->whirls[rows->ends[i].b];
+    }
+    for (int32_t k = 0; k < count; k++) {
+        Contact *c = &rows->contact[rows->list[k]];
+        if (!foresee(c, &mover[c->a], &mover[c->b], dt)) continue;
+        rows_heat(rows, mover, c->a, true);
+        rows_heat(rows, mover, c->b, true);
         any = true;
     }
     return any;

@@ -22,16 +22,8 @@ bool near_look(Crowd *crowd, World *world, Near *near, double soon, double later
     return true;
 }
 
-double near_skin(const World *world, const Near *near) {
-    return SKIN * contact_reach(world, near->piece_a, near->piece_b);
-}
-
-/* An upper bound of how much nearer two bodies come in dt, whatever the direction. */
-double near_closing(const Crowd *crowd, const World *world, const Near *near, double dt) {
-    const Mover *a = &crowd->mover[near->a], *b = &crowd->mover[near->b];
-    double turning =
-        fabs(a->spin) * crowd->posed.swing[near->piece_a] + fabs(b->spin) * crowd->posed.swing[near->piece_b];
-    return dt * (vlength(vsub(b->velocity, a->velocity)) + turning) + dt * dt * vlength(world->gravity);
+double near_skin(const Crowd *crowd, const Near *near) {
+    return SKIN * contact_reach(crowd, near->piece_a, near->piece_b);
 }
 
 static void advance(Mover *m, const Mover *from, double time) {
@@ -44,7 +36,7 @@ static void advance(Mover *m, const Mover *from, double time) {
 bool near_look_along(Crowd *crowd, World *world, Near *near, double dt, double later) {
     enum { STEPS = 32 };
     Mover *a = &crowd->mover[near->a], *b = &crowd->mover[near->b], from_a = *a, from_b = *b;
-    double time = 0, close = near_skin(world, near);
+    double time = 0, close = near_skin(crowd, near);
     bool contact = false;
     Near probe = *near;
     for (int32_t step = 0; step < STEPS && time < dt; step++) {

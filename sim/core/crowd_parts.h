@@ -43,6 +43,8 @@ struct Crowd {
     int64_t *placed; /* by body: the moment for which its outlines hold */
     int64_t moment; /* counts frames and substeps */
     Posed posed;
+    double fall; /* the size of gravity [m/s^2] */
+    double *piece_reach; /* by piece: its shape's reach */
     Box *piece_box; /* by piece, when the frame began, without margins */
     Box *shape_box; /* by shape: all that it may sweep in the frame */
     Range *range; /* by body: within which those boxes hold */
@@ -76,8 +78,12 @@ static inline void *table(size_t count, size_t size) { return calloc(count + 1, 
 
 static inline bool crowd_moves(const World *world, int32_t body) { return world->body[body].mode == MODE_CROWD; }
 
+/* The smaller reach of two pieces' shapes: what lengths about their contact are measured by. */
+static inline double contact_reach(const Crowd *crowd, int32_t piece_a, int32_t piece_b) {
+    return smaller(crowd->piece_reach[piece_a], crowd->piece_reach[piece_b]);
+}
+
 /* crowd_contact.c */
-double contact_reach(const World *world, int32_t piece_a, int32_t piece_b);
 void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Record *old);
 void contact_add(Crowd *crowd, const World *world, const Near *near, const Manifold *m);
 
@@ -109,6 +115,16 @@ static inline void near_set(const Crowd *crowd, Near *n, Vec normal, double gap)
     n->turned_b = b->turned;
 }
 
+/* An upper bound of how fast two bodies' pieces come nearer, whatever the direction. */
+static inline double near_rate(const Crowd *crowd, const Near *n) {
+    const Mover *a = &crowd->mover[n->a], *b = &crowd->mover[n->b];
+    return vlength(vsub(b->velocity, a->velocity)) + fabs(a->spin) * crowd->posed.swing[n->piece_a] +
+           fabs(b->spin) * crowd->posed.swing[n->piece_b];
+}
+
+/* And of how much nearer at that rate in dt, as gravity changes it. */
+static inline double near_closing(const Crowd *crowd, double rate, double dt) { return dt * (rate + dt * crowd->fall); }
+
 /* How much nearer two bodies' pieces can come along the normal in dt, at their present velocities. */
 static inline double near_approach(const Crowd *crowd, const Near *n, double dt) {
     const Mover *a = &crowd->mover[n->a], *b = &crowd->mover[n->b];
@@ -120,8 +136,7 @@ void near_manifold(Crowd *crowd, World *world, int32_t piece_a, int32_t piece_b,
                    Manifold *m);
 bool near_look(Crowd *crowd, World *world, Near *near, double soon, double later);
 bool near_look_along(Crowd *crowd, World *world, Near *near, double dt, double later);
-double near_skin(const World *world, const Near *near);
-double near_closing(const Crowd *crowd, const World *world, const Near *near, double dt);
+double near_skin(const Crowd *crowd, const Near *near);
 
 /* crowd_touch.c */
 int touch_create(Crowd *crowd, const World *world);

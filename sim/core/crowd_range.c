@@ -11,6 +11,7 @@ int range_create(Crowd *crowd, const World *world) {
     crowd->start = table(bodies, sizeof *crowd->start);
     crowd->placed = table(bodies, sizeof *crowd->placed);
     crowd->piece_box = table(pieces, sizeof *crowd->piece_box);
+    crowd->piece_reach = table(pieces, sizeof *crowd->piece_reach);
     crowd->shape_box = table(shapes, sizeof *crowd->shape_box);
     crowd->shape_moves = table(shapes, sizeof *crowd->shape_moves);
     crowd->range = table(bodies, sizeof *crowd->range);
@@ -18,12 +19,13 @@ int range_create(Crowd *crowd, const World *world) {
     crowd->body_swing = table(bodies, sizeof *crowd->body_swing);
     crowd->lead = table(bodies, sizeof *crowd->lead);
     if (!crowd->start || !crowd->placed || !crowd->piece_box || !crowd->shape_box || !crowd->shape_moves ||
-        !crowd->range || !crowd->start_angle || !crowd->body_swing || !crowd->lead)
+        !crowd->range || !crowd->piece_reach || !crowd->start_angle || !crowd->body_swing || !crowd->lead)
         return SIM_OUT_OF_MEMORY;
     if (posed_create(&crowd->posed, world) != SIM_OK) return SIM_OUT_OF_MEMORY;
     for (int32_t i = 0; i < world->piece_count; i++) {
         int32_t body = world->shape[world->piece[i].shape].body;
         crowd->body_swing[body] = larger(crowd->body_swing[body], crowd->posed.swing[i]);
+        crowd->piece_reach[i] = world->shape[world->piece[i].shape].reach;
     }
     return SIM_OK;
 }
@@ -33,6 +35,7 @@ void range_destroy(Crowd *crowd) {
     free(crowd->placed);
     posed_destroy(&crowd->posed);
     free(crowd->piece_box);
+    free(crowd->piece_reach);
     free(crowd->shape_box);
     free(crowd->shape_moves);
     free(crowd->range);
@@ -132,9 +135,8 @@ void range_widen(Crowd *crowd, const World *world, int32_t body, double left) {
 bool range_left(const Crowd *crowd, int32_t body, double dt) {
     const Mover *m = &crowd->mover[body];
     const Range *range = &crowd->range[body];
-    Vec to = vmad(m->moved, dt, m->velocity);
-    double out =
-        larger(larger(range->low.x - to.x, to.x - range->high.x), larger(range->low.y - to.y, to.y - range->high.y));
-    double turning = smaller(fabs(m->turned) + fabs(m->spin) * dt, 2.0) * crowd->body_swing[body];
-    return larger(out, 0) + turning > range->room;
+    Two to = two(m->moved) + both(dt) * two(m->velocity), low = two(range->low) - to, high = to - two(range->high);
+    double room = range->room - smaller(fabs(m->turned) + fabs(m->spin) * dt, 2.0) * crowd->body_swing[body];
+    Mask out = (Mask)(low > both(room)) | (Mask)(high > both(room));
+    return (out[0] | out[1]) != 0 || room < 0;
 }

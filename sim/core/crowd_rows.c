@@ -16,7 +16,8 @@
 #include "sim.h"
 
 int rows_create(Rows *rows, int32_t mover_count) {
-    *rows = (Rows){.mover_count = mover_count, .hot = calloc((size_t)mover_count, sizeof *rows->hot)};
+    *rows = (Rows){.mover_count = mover_count, .hot = calloc(2 * (size_t)mover_count, sizeof *rows->hot)};
+    rows->whirls = rows->hot ? rows->hot + mover_count : NULL;
     return rows->hot ? SIM_OK : SIM_OUT_OF_MEMORY;
 }
 
@@ -173,11 +174,10 @@ static inline double solve_pair(Contact *c, Meeting *m) {
     Two free = pair_speed(c, m) - c->limit - k * had - k12 * swapped(had);
     Two impulse = (k12 * swapped(free) - swapped(k) * free) * both(c->pair_mass);
     Two alone = -free * c->mass_n, other = k12 * alone + swapped(free);
-    bool pressed = (impulse[0] >= 0) & (impulse[1] >= 0);
-    bool first = (alone[0] >= 0) & (other[0] >= 0), second = !first & (alone[1] >= 0) & (other[1] >= 0);
-    alone[0] = first ? alone[0] : none[0];
-    alone[1] = second ? alone[1] : none[1];
-    impulse = pressed ? impulse : alone;
+    Mask fits = (Mask)(alone >= none) & (Mask)(other >= none), pressed = (Mask)(impulse >= none);
+    fits &= ~(Mask){0, fits[0]}; /* the first point alone, else the second */
+    pressed &= (Mask){pressed[1], pressed[0]};
+    impulse = (Two)((pressed & (Mask)impulse) | (~pressed & fits & (Mask)alone));
     Two change = impulse - had;
     c->impulse_n = impulse;
     finish(c, m, tangent_speed(c, m) + sum_of(change * c->cross), sum_of(change), sum_of(c->spin_na * change),
@@ -203,15 +203,14 @@ static double solve_in_turn(Contact *c, Meeting *m) {
     return larger(first, second);
 }
 
-/* All contacts, or those of hot bodies, which are hot no longer. Returns how many there are in rows->list. */
-static int32_t list_contacts(Rows *rows, bool all) {
+/* The contacts of hot bodies. Returns how many there are in rows->list. */
+static int32_t list_hot(Rows *rows) {
     int32_t count = 0;
     for (int32_t i = 0; i < rows->count; i++) {
         const Ends *ends = &rows->ends[i];
         rows->list[count] = i;
-        count += all | rows->hot[ends->a] | rows->hot[ends->b];
+        count += rows->hot[ends->a] | rows->hot[ends->b];
     }
-    memset(rows->hot, 0, (size_t)rows->mover_count * sizeof *rows->hot);
     return count;
 }
 
@@ -225,10 +224,11 @@ static inline bool leave_noticed(Rows *rows, const Contact *c, const Meeting *m,
 }
 
 bool rows_solve(Rows *rows, Mover *mover, double dt, bool all) {
-    int32_t listed = list_contacts(rows, all), ones = 0, others = 0;
+    int32_t listed = all ? rows->count : list_hot(rows), ones = 0, others = 0;
     bool heated = false;
+    memset(rows->hot, 0, (size_t)rows->mover_count * sizeof *rows->hot);
     for (int32_t k = 0; k < listed; k++) {
-        int32_t i = rows->list[k], kind = rows->ends[i].kind;
+        int32_t i = all ? k : rows->list[k], kind = rows->ends[i].kind;
         rows->one[ones] = rows->other[others] = i;
         ones += kind == KIND_ONE;
         others += kind > KIND_ONE;

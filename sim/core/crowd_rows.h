@@ -19,6 +19,9 @@ typedef struct Mover {
 /* A number for each of a contact's two points, reckoned with lane by lane (an extension that gcc and clang share). */
 typedef double Two __attribute__((vector_size(16), aligned(8)));
 
+/* Of each lane all bits or none, as comparisons give it. */
+typedef long long Mask __attribute__((vector_size(16)));
+
 /* How a contact's normal rows are solved. */
 typedef enum Kind {
     KIND_OPEN,  /* it has no points now */
@@ -79,6 +82,7 @@ typedef struct Rows {
     Ends *ends; /* of each contact */
     int32_t count, capacity;
     bool *hot; /* by mover: something changed it noticeably since the last pass made its list */
+    bool *whirls; /* by mover: it turns fast; of what does not take part in the frame it is false */
     int32_t mover_count;
     int32_t *list, *one, *other; /* contacts to be solved in a pass: all, those of one point, the rest */
     int32_t *stale; /* contacts whose bodies have turned or shifted a good deal since their points were found */
@@ -100,11 +104,11 @@ static inline void rows_heat(Rows *rows, const Mover *mover, int32_t body, bool 
 
 static inline bool contact_presses(const Contact *c) { return c->impulse_n[0] > 0 || c->impulse_n[1] > 0; }
 
-/* C's fmin and fmax are calls, for the sake of NaN; so may be choices, which a processor guesses wrong. */
 static inline Two two(Vec v) { return (Two){v.x, v.y}; }
 static inline Two both(double x) { return (Two){x, x}; }
 static inline Two swapped(Two x) { return (Two){x[1], x[0]}; }
 static inline double sum_of(Two x) { return x[0] + x[1]; }
+static inline Two positive(Two x) { return (Two)((Mask)x & (Mask)(x > both(0))); } /* else 0 */
 
 /* Solving for velocities (crowd_rows.c); `from`: the first contact that it is for. */
 

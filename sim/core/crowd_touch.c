@@ -63,8 +63,8 @@ static bool came_straight(const Crowd *crowd, const World *world, int32_t body) 
 static int consider(Crowd *crowd, World *world, Near near, double dt, double substep, bool *woke) {
     if (near_room(crowd, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (rows_room(&crowd->rows, crowd->rows.count + crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
-    double skin = near_skin(world, &near), later = near_closing(crowd, world, &near, dt) + skin;
-    double soon = near_closing(crowd, world, &near, substep) + skin;
+    double skin = near_skin(crowd, &near), rate = near_rate(crowd, &near);
+    double later = near_closing(crowd, rate, dt) + skin, soon = near_closing(crowd, rate, substep) + skin;
     bool contact = false;
     Vec normal;
     double gap = box_gap(&crowd->piece_box[near.piece_a], &crowd->piece_box[near.piece_b], &normal);
@@ -82,7 +82,7 @@ static int consider(Crowd *crowd, World *world, Near near, double dt, double sub
             gap = kept;
         }
     }
-    double reach = contact_reach(world, near.piece_a, near.piece_b);
+    double reach = contact_reach(crowd, near.piece_a, near.piece_b);
     if (gap <= soon && soon <= FAST * reach) contact = near_look(crowd, world, &near, soon, later + MORE * reach);
     if (!contact) crowd->near[crowd->near_count++] = near;
     if (near.gap > later) return SIM_OK;
@@ -122,6 +122,7 @@ static void load(Crowd *crowd, const World *world) {
     for (int32_t i = 0; i < world->body_count; i++) {
         const Body *body = &world->body[i];
         Mover *m = &crowd->mover[i];
+        crowd->rows.whirls[i] = false;
         *m = (Mover){0};
         if (body->mode != MODE_CROWD) continue;
         crowd->active[crowd->active_count++] = i;
@@ -136,6 +137,7 @@ static void load(Crowd *crowd, const World *world) {
  * woken, and those that they reach in turn. */
 int touch_frame(Crowd *crowd, World *world, double dt, double substep) {
     crowd->moment++;
+    crowd->fall = vlength(world->gravity);
     for (int32_t i = 0; i < world->body_count; i++) crowd->roused[i] = 0;
     crowd->known.count = -1;
     bool woke;
@@ -175,7 +177,7 @@ void touch_refresh(Crowd *crowd, World *world, double left) {
             .piece_a = (int32_t)(c->key >> 32), .piece_b = (int32_t)(c->key & 0xffffffffu), .a = c->a, .b = c->b};
         Manifold m;
         near_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b,
-                      near_closing(crowd, world, &near, left) + c->slack, &m);
+                      near_closing(crowd, near_rate(crowd, &near), left) + c->slack, &m);
         Record old = contact_record(c);
         contact_set_points(crowd, world, c, &m, &old);
         gap_limit(c, 1, crowd->mover, crowd->substep);
@@ -245,9 +247,9 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     for (int32_t i = 0; i < crowd->near_count; i++) {
         Near *near = &crowd->near[i];
         if (near_gap(crowd, near) <= near_approach(crowd, near, substep)) {
-            double soon = near_closing(crowd, world, near, substep),
-                   reach = contact_reach(world, near->piece_a, near->piece_b);
-            double later = soon + near_closing(crowd, world, near, left) + MORE * reach;
+            double rate = near_rate(crowd, near), soon = near_closing(crowd, rate, substep),
+                   reach = contact_reach(crowd, near->piece_a, near->piece_b);
+            double later = soon + near_closing(crowd, rate, left) + MORE * reach;
             bool fast = soon > FAST * reach;
             if (fast ? near_look_along(crowd, world, near, substep, later)
                      : near_look(crowd, world, near, soon, later)) {
@@ -269,7 +271,7 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
 }
 
 /* Which bodies touch something, hang on something, or may meet something in another frame like this one. */
-static void find_touched(Crowd *crowd, const World *world, double dt) {
+static void find_touched(Crowd *crowd, double dt) {
     bool *touched = crowd->touched;
     for (int32_t k = 0; k < crowd->active_count; k++) touched[crowd->active[k]] = false;
     for (int32_t i = 0; i < crowd->pivots.count; i++)
@@ -278,14 +280,14 @@ static void find_touched(Crowd *crowd, const World *world, double dt) {
         touched[crowd->rows.ends[i].a] = touched[crowd->rows.ends[i].b] = true;
     for (int32_t i = 0; i < crowd->near_count; i++) {
         const Near *near = &crowd->near[i];
-        if (near_gap(crowd, near) <= near_closing(crowd, world, near, dt) + near_skin(world, near))
+        if (near_gap(crowd, near) <= near_closing(crowd, near_rate(crowd, near), dt) + near_skin(crowd, near))
             touched[near->a] = touched[near->b] = true;
     }
 }
 
 /* At the end of a frame: who touches, and what is known of the gaps, for the next one. */
 int touch_finish(Crowd *crowd, const World *world, double dt) {
-    find_touched(crowd, world, dt);
+    find_touched(crowd, dt);
     if (index_room(&crowd->last_index, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     index_clear(&crowd->last_index);
     for (int32_t i = 0; i < crowd->near_count; i++) {

@@ -12,7 +12,7 @@
 #define STEPS_A_SECOND 20000.0 /* of the integrator, a simulated second: what turns faster than that is for the crowd */
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
 #define STEPS_OF_PAIR 32.0 /* of a search that cost as much again as looking at a pair at all */
-#define GLANCE 0.125 /* of a pair: what it costs to see that the two do not come near each other */
+#define GLANCE 0.5 /* of a pair: what it costs to see that the two do not come near each other */
 #define PAIRS_OF_FEW 1e6 /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
 int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance) {

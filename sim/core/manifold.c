@@ -58,10 +58,8 @@ static int32_t lowest(const Outline *b, Vec normal) {
     double least = vdot(normal, b->vertex[0]);
     for (int32_t j = 1; j < b->count; j++) {
         double value = vdot(normal, b->vertex[j]);
-        if (value < least) {
-            least = value;
-            at = j;
-        }
+        at = value < least ? j : at;
+        least = smaller(value, least);
     }
     return at;
 }

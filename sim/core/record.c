@@ -1,6 +1,7 @@
 #include "record.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 int recorder_create(Recorder *r, const World *world, const SimOptions *options, double *frames) {
     *r = (Recorder){.world = world, .fps = options->fps, .sample_count = options->sample_count, .frames = frames};
@@ -33,11 +34,27 @@ static void write_sample(Recorder *r, int32_t body, int64_t k, const State *stat
     }
 }
 
+/* A sample that is as the one before. */
+static void repeat_sample(Recorder *r, int32_t body, int64_t k) {
+    const World *world = r->world;
+    const Body *b = &world->body[body];
+    double *frame = r->frames + k * 6 * world->source_count;
+    for (int32_t i = b->first_shape; i < b->first_shape + b->shape_count; i++) {
+        double *out = frame + 6 * world->shape[i].source;
+        memcpy(out, out - 6 * world->source_count, 6 * sizeof *out);
+    }
+}
+
 void record_motion(Recorder *r, int32_t body, const Motion *motion, double time) {
     int64_t k = r->next[body];
     if (motion->degree == 0) {
         State state = motion_state(motion, motion->start);
-        for (; k < r->sample_count && (double)k / r->fps < time; k++) write_sample(r, body, k, &state);
+        for (int64_t first = k; k < r->sample_count && (double)k / r->fps < time; k++) {
+            if (k == first)
+                write_sample(r, body, k, &state);
+            else
+                repeat_sample(r, body, k);
+        }
     } else {
         for (; k < r->sample_count && (double)k / r->fps < time; k++) {
             State state = motion_state(motion, (double)k / r->fps);
