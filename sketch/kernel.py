@@ -136,7 +136,7 @@ class ArrowFit(NamedTuple):
 
     names: tuple[int, ...]
     tail: Point
-    head: Array
+    head: tuple[Point, Point, Point]
     lengths: list[float]
     unlike: float
     ink: list[float]
@@ -238,9 +238,9 @@ def fit_arrows(
     )
     found = []
     for (g, *group), v in zip(groups[:count].tolist(), fits[:count].tolist(), strict=True):
-        strokes_of = tuple(i for i in group if i >= 0)
-        head = np.array(v[:6]).reshape(3, 2)
-        found.append(ArrowFit(strokes_of, shafts[g].tail, head, v[6:9], v[11], v[12:15], v[15], v[16:]))
+        own = tuple(i for i in group if i >= 0)
+        head = (v[0], v[1]), (v[2], v[3]), (v[4], v[5])
+        found.append(ArrowFit(own, shafts[g].tail, head, v[6:9], v[11], v[12:15], v[15], v[16:]))
     return found
 
 

@@ -134,33 +134,35 @@ def read_arrows(page: Page, shafts: Sequence[Shaft], worse: float = math.inf) ->
         return []
     free = [page.pieces[i].unread for shaft in shafts for i in shaft.names]
     fits = fit_arrows(page.strokes, shafts, free, worse - RARE_ARROW - 4 * PARAMETER)
-    return [_arrow(page, fit) for fit in fits if page.apart(fit.names[-1], fit.names[:-1])]
+    apart = (fit for fit in fits if page.apart(fit.names[-1], fit.names[:-1]))
+    return [arrow for fit in apart if (arrow := _arrow(page, fit, worse)) is not None]
 
 
-def _arrow(page: Page, fit: ArrowFit) -> Fitted:
+def _arrow(page: Page, fit: ArrowFit, worse: float) -> Fitted | None:
+    """An arrow with its price; None where it is more than `worse` nats above what its ink takes freely."""
     shaft, left, right = fit.lengths
     pieces = [page.pieces[i] for i in fit.names]
-    # an arrow whose ends meet is no loop, nor a barb that was drawn forth and back
-    whole = (
-        [SHAFT * shaft]
-        if len(pieces) == 1
-        else [p.extent / 2 if p.extent < 0.6 * shaft else None for p in pieces]
-    )
-    off = 0.0
-    for p, square, scale in zip(pieces, fit.off, whole, strict=False):
-        cost = misfit_of(p, square, scale)
-        if cost > HEAD * p.observations and p.extent < 0.6 * shaft and _within(page, p, fit.head):
-            cost = HEAD * p.observations
-        off += cost
     count = sum(p.observations for p in pieces)
+    most = sum(p.unread for p in pieces) + worse
     # what lacks, and what goes over the arrow more often than a hand does, takes as much to say as free ink
     parts = zip((shaft, left, right), OFTEN, fit.ink, strict=True)
     wrong = sum(max(long - ink, ink - often * long, 0.0) for long, often, ink in parts)
     again = FREE * wrong / sum(fit.ink) * count + misfit(fit.bare / (GAPS * shaft) ** 2, count)
+    off, said = 0.0, RARE_ARROW + 4 * PARAMETER + again + fit.unlike
+    for p, square in zip(pieces, fit.off, strict=False):
+        small = p.extent < 0.6 * shaft
+        # an arrow whose ends meet is no loop, nor a barb that was drawn forth and back
+        scale = SHAFT * shaft if len(pieces) == 1 else p.extent / 2 if small else None
+        cost, free = misfit_of(p, square, scale), HEAD * p.observations
+        if said + off + (min(cost, free) if small else cost) > most:
+            return None
+        off += free if cost > free and small and _within(page, p, np.array(fit.head)) else cost
     # tail and tip; the head is said by how unlike a head it is
     cost = RARE_ARROW + 4 * PARAMETER + off + again + fit.unlike
-    tip, left, right = fit.head.tolist()
-    figure = np.array([fit.tail, tip, left, tip, right, tip])
+    if cost > most:
+        return None
+    tip, left_end, right_end = fit.head
+    figure = np.array([fit.tail, tip, left_end, tip, right_end, tip])
     return Fitted("arrow", tuple(sorted(fit.names)), cost, np.array([fit.tail, tip]), figure=figure)
 
 
