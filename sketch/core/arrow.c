@@ -33,30 +33,32 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
     if (l <= 0) return 0;
     ux /= l;
     uy /= l;
-    double reach = 0, left[2] = {0, 0}, right[2] = {0, 0}; /* along the shaft, and across */
+    double along[MOST_STROKES * SAMPLES], across[MOST_STROKES * SAMPLES]; /* the shaft */
+    double reach = 0, left[2] = {0, 0}, right[2] = {0, 0};
+    int total = count * SAMPLES;
     for (int k = 0; k < count; k++)
         for (int i = 0; i < SAMPLES; i++) {
-            const double *p = samples + 2 * (SAMPLES * names[k] + i);
-            double s = (p[0] - tail[0]) * ux + (p[1] - tail[1]) * uy, h = (p[1] - tail[1]) * ux - (p[0] - tail[0]) * uy;
-            if (s > reach) reach = s;
-            if (h > left[1]) {
-                left[0] = s;
-                left[1] = h;
-            }
-            if (h < right[1]) {
-                right[0] = s;
-                right[1] = h;
-            }
+            const double *p = samples + 2 * (SAMPLES * names[k] + i), x = p[0] - tail[0], y = p[1] - tail[1];
+            along[k * SAMPLES + i] = x * ux + y * uy;
+            across[k * SAMPLES + i] = y * ux - x * uy;
         }
+    for (int i = 0; i < total; i++) {
+        double s = along[i], h = across[i];
+        if (s > reach) reach = s;
+        if (h > left[1]) {
+            left[0] = s;
+            left[1] = h;
+        }
+        if (h < right[1]) {
+            right[0] = s;
+            right[1] = h;
+        }
+    }
     double sum = 0, n = 0;
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < SAMPLES; i++) {
-            const double *p = samples + 2 * (SAMPLES * names[k] + i);
-            double s = (p[0] - tail[0]) * ux + (p[1] - tail[1]) * uy, h = (p[1] - tail[1]) * ux - (p[0] - tail[0]) * uy;
-            if (s > 0.96 * reach) {
-                sum += h;
-                n++;
-            }
+    for (int i = 0; i < total; i++)
+        if (along[i] > 0.96 * reach) {
+            sum += across[i];
+            n++;
         }
     if (reach <= 0) return 0;
     double tip[2] = {reach, sum / n}, origin[2] = {0, 0};
@@ -73,40 +75,31 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
     out->unlike = 0.5 * (alike * alike + size * size + (spread[0] * spread[0] + spread[1] * spread[1]));
     if (out->unlike > most) return 0;
     ink[0] = ink[1] = ink[2] = 0;
-    for (int k = 0; k < count; k++) {
-        off[k] = 0;
-        for (int i = 0; i < SAMPLES; i++) {
-            const double *p = samples + 2 * (SAMPLES * names[k] + i);
-            double s = (p[0] - tail[0]) * ux + (p[1] - tail[1]) * uy, h = (p[1] - tail[1]) * ux - (p[0] - tail[0]) * uy;
-            const double d[3] = {segment_distance2(s, h, origin, tip), segment_distance2(s, h, tip, left),
-                                 segment_distance2(s, h, tip, right)};
-            int nearest = d[1] < d[0] ? (d[2] < d[1] ? 2 : 1) : (d[2] < d[0] ? 2 : 0);
-            off[k] += d[nearest] / SAMPLES;
-            ink[nearest] += length[8 * names[k]] / SAMPLES;
-        }
+    for (int k = 0; k < count; k++) off[k] = 0;
+    for (int i = 0; i < total; i++) {
+        double s = along[i], h = across[i];
+        const double d[3] = {segment_distance2(s, h, origin, tip), segment_distance2(s, h, tip, left),
+                             segment_distance2(s, h, tip, right)};
+        int nearest = d[1] < d[0] ? (d[2] < d[1] ? 2 : 1) : (d[2] < d[0] ? 2 : 0);
+        off[i / SAMPLES] += d[nearest] / SAMPLES;
+        ink[nearest] += length[8 * names[i / SAMPLES]] / SAMPLES;
     }
     /* An arrow has ink along all of it: a barb that nobody drew is as far off as ink that no arrow has. */
     const double *part[3][2] = {{origin, tip}, {tip, left}, {tip, right}};
-    double whole = lengths[0] + lengths[1] + lengths[2];
-    out->bare = 0;
-    for (int e = 0; e < 3; e++) {
-        double bare = 0;
-        for (int i = 0; i < STEPS; i++) {
-            double t = (i + 0.5) / STEPS, nearest = INFINITY;
-            double s = part[e][0][0] + t * (part[e][1][0] - part[e][0][0]);
-            double h = part[e][0][1] + t * (part[e][1][1] - part[e][0][1]);
-            double x = tail[0] + s * ux - h * uy, y = tail[1] + s * uy + h * ux;
-            for (int k = 0; k < count; k++) {
-                const double *p = samples + 2 * SAMPLES * names[k];
-                for (int j = 0; j < SAMPLES; j++) {
-                    double dx = p[2 * j] - x, dy = p[2 * j + 1] - y;
-                    nearest = fmin(nearest, dx * dx + dy * dy);
-                }
-            }
-            bare += nearest / STEPS;
-        }
-        out->bare += bare * lengths[e] / whole;
+    double s[3 * STEPS], h[3 * STEPS], nearest[3 * STEPS], whole = lengths[0] + lengths[1] + lengths[2];
+    for (int i = 0; i < 3 * STEPS; i++) {
+        const double *a = part[i / STEPS][0], *b = part[i / STEPS][1], t = (i % STEPS + 0.5) / STEPS;
+        s[i] = a[0] + t * (b[0] - a[0]);
+        h[i] = a[1] + t * (b[1] - a[1]);
+        nearest[i] = INFINITY;
     }
+    for (int j = 0; j < total; j++)
+        for (int i = 0; i < 3 * STEPS; i++) {
+            double ds = along[j] - s[i], dh = across[j] - h[i], d2 = ds * ds + dh * dh;
+            nearest[i] = d2 < nearest[i] ? d2 : nearest[i];
+        }
+    out->bare = 0;
+    for (int i = 0; i < 3 * STEPS; i++) out->bare += nearest[i] / STEPS * lengths[i / STEPS] / whole;
     const double *at[3] = {tip, left, right};
     for (int e = 0; e < 3; e++) {
         head[2 * e] = tail[0] + at[e][0] * ux - at[e][1] * uy;
