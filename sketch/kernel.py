@@ -19,6 +19,7 @@ __all__ = [
     "Point",
     "Shaft",
     "Strokes",
+    "along",
     "course",
     "cuts",
     "depth",
@@ -34,6 +35,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
+Box = tuple[float, float, float, float]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
 COURSE, HEADS = 32, 4  # as in core/course.c and core/heads.c
@@ -46,6 +48,7 @@ _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("i
 _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _pointer, _pointer, _double, _pointer, _pointer)(
     ("ink_arrows", _lib)
 )
+_along = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 4, _int, _double, _pointer, _pointer)(("ink_along", _lib))
 _heads = ctypes.CFUNCTYPE(None, _int, *[_pointer] * 5, _int, _pointer, *[_double] * 3, _pointer, _pointer)(
     ("ink_heads", _lib)
 )
@@ -261,6 +264,27 @@ def heads(
     _heads(len(ink[0]), *of, *rivals, shaft, given.ctypes.data, *limits, at, at + 8 * HEADS)
     *near, first, second = out.tolist()
     return near[:first], near[HEADS : HEADS + second]
+
+
+def along(
+    boxes: Array, strokes: Strokes, sizes: Array, outline: Array, reach: float
+) -> tuple[list[int], Box]:
+    """The pieces in an outline's box, widened by `reach`, whose ink may run along it, and that box (see
+    core/along.c)."""
+    found, box = np.empty(len(boxes), dtype=np.int32), np.empty(4)
+    count = _along(
+        len(boxes),
+        boxes.ctypes.data,
+        strokes.samples.ctypes.data,
+        sizes.ctypes.data,
+        outline.ctypes.data,
+        len(outline),
+        reach,
+        box.ctypes.data,
+        found.ctypes.data,
+    )
+    x0, y0, x1, y1 = box.tolist()
+    return found[:count].tolist(), (x0, y0, x1, y1)
 
 
 def cuts(points: Array) -> tuple[list[float], list[int]]:

@@ -11,16 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.ink import Sketch
-from sketch.kernel import Point, heads, joined, measure
+from sketch.kernel import Point, along, heads, joined, measure
 from sketch.loose import Chain, End, LooseEnds
 from sketch.scoring import unread
 
 __all__ = ["Looked", "Page", "Piece", "page_of"]
 
 DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
-FEW = 8  # pieces, of which each is looked at as a whole
-PLACES = (0, 16, 31, 47)  # of the samples of a stroke
-ASTRAY = 0.3  # of a piece's size: ink further off than this does not run along something
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
 Array = NDArray[np.float64]
@@ -113,6 +110,7 @@ class Page:
         self.looked = Looked()
         self._dot = 0.0
         self._boxes = np.empty((0, 4))
+        self._sizes = np.empty(0)  # of each: what its distances from other ink are compared with [pixels]
         self._points = np.empty((0, 2), dtype=np.int64)  # of each piece where its points are, and how many
 
     def add(self, strokes: list[Array]) -> range:
@@ -123,6 +121,7 @@ class Page:
         self.strokes = joined(self.strokes, new)
         count = len(strokes)
         self._boxes = np.concatenate([self._boxes, np.full((count, 4), np.nan)])
+        self._sizes = np.concatenate([self._sizes, np.zeros(count)])
         ends = np.zeros((count, 2, 2))
         begins = np.concatenate([[0], new.ends[:-1]])[:count]
         places = np.stack([new.points.ctypes.data + 16 * begins, new.ends - begins], axis=1)
@@ -132,8 +131,9 @@ class Page:
             if m[0] > 0:
                 i = first + k
                 self.pieces[i] = _piece(i, i, points[k], m, residuals[k], vertices[k], self._dot)
-                self._boxes[i] = self.pieces[i].box
-                ends[k] = self.pieces[i].ends
+                piece = self.pieces[i]
+                self._boxes[i], ends[k] = piece.box, piece.ends
+                self._sizes[i] = max(piece.scale, piece.extent / 2)
         self.ends.add(ends, new.measure[:, 0])
         return range(first, first + count)
 
@@ -170,28 +170,12 @@ class Page:
         """Whether a piece shares no ink with some others."""
         return not self.rivals or self.rivals[index].isdisjoint(others)
 
-    def within(self, outline: Array, reach: float) -> list[Piece]:
-        """The pieces that lie in an outline's bounding box, widened by `reach` [pixels]."""
-        x0, y0 = (outline.min(axis=0) - reach).tolist()
-        x1, y1 = (outline.max(axis=0) + reach).tolist()
-        self.looked.boxes.append((x0, y0, x1, y1))
-        b = self._boxes
-        inside = (b[:, 0] >= x0) & (b[:, 1] >= y0) & (b[:, 2] <= x1) & (b[:, 3] <= y1)
-        return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
-
     def along(self, outline: Array, reach: float) -> list[Piece]:
-        """Those `within` whose ink may run along an outline; told by a few places of each, where they are many."""
-        found = self.within(outline, reach)
-        if len(found) <= FEW:
-            return found
-        corner = outline[:, 0] + 1j * outline[:, 1]
-        side = np.roll(corner, -1) - corner
-        places = self.strokes.samples[[p.stroke for p in found]][:, PLACES]
-        off = (places[..., 0] + 1j * places[..., 1])[..., None] - corner
-        off -= np.clip((off * side.conj()).real / np.maximum(np.abs(side) ** 2, 1e-9), 0, 1) * side
-        square = (np.abs(off).min(axis=2) ** 2).mean(axis=1)
-        sizes = np.array([max(p.scale, p.extent / 2) for p in found])
-        return [found[k] for k in np.flatnonzero(square < (ASTRAY * sizes) ** 2).tolist()]
+        """The pieces in an outline's bounding box, widened by `reach` [pixels], whose ink may run along it; told by
+        a few places of each, where they are many."""
+        found, box = along(self._boxes, self.strokes, self._sizes, outline, reach)
+        self.looked.boxes.append(box)
+        return [self.pieces[i] for i in found]
 
     def touching(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:
         """The pieces whose bounding box has a point in this one."""
