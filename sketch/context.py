@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.kernel import depth
+from sketch.kernel import beside, depth
 from sketch.proposals import Box, Proposed
 from sketch.scoring import Fitted
 
@@ -118,7 +118,7 @@ def _letters(
     known: gaps of the last time, replaced by those of this one.
     """
     taken = {i for k in chosen if candidates[k].kind not in ("bar", "cross") for i in candidates[k].pieces}
-    pins = [candidates[k].outline.mean(axis=0) for k in chosen if candidates[k].kind == "circle"]
+    pins = [candidates[k].middle for k in chosen if candidates[k].kind == "circle"]
     readings: dict[tuple[int, ...], list[int]] = {}  # a stroke too short or bent for a rod is in a letter too
     for k, c in enumerate(candidates):
         if c.kind == "bar" and taken.isdisjoint(c.pieces):
@@ -162,12 +162,6 @@ def _dense(line: Array) -> Array:
     return np.asarray((line[:-1] + t * (line[1:] - line[:-1])).reshape(-1, 2))
 
 
-def _middle(outline: Array) -> list[float]:
-    """The mean of an outline's corners [pixels]."""
-    middle: list[float] = (np.add.reduce(outline, axis=0) / len(outline)).tolist()
-    return middle
-
-
 class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
@@ -180,13 +174,7 @@ class _Bodies:
     def beside(self, boxes: list[Box]) -> list[list[int]]:
         """Which bodies can matter to marks in each of these boxes."""
         out: list[list[int]] = [[] for _ in boxes]
-        if not self.bodies or not boxes:
-            return out
-        x0, y0, x1, y1 = np.array(boxes).T[:, :, None]
-        left, top, right, bottom, extent = np.array(self.rows).T
-        r = np.maximum(0.1 * extent, np.hypot(np.maximum(x1 - x0, 0), np.maximum(y1 - y0, 0)))
-        close = (left - r <= x1) & (top - r <= y1) & (right + r >= x0) & (bottom + r >= y0)
-        for i, b in np.argwhere(close).tolist():
+        for i, b in beside(np.array(boxes), np.array(self.rows)) if self.bodies and boxes else ():
             out[i].append(b)
         return out
 
@@ -194,7 +182,7 @@ class _Bodies:
         """How many bodies of other ink, at least so large, have c's centre within them or within `reach`."""
         if not self.closed:
             return 0
-        (x, y), count = _middle(c.outline), 0
+        (x, y), count = c.middle, 0
         for body, (x0, y0, x1, y1, extent) in self.closed:
             if (
                 x0 - reach <= x <= x1 + reach
@@ -226,7 +214,7 @@ class _Bodies:
         for mark, extent in self.crosses:
             if extent >= long / LARGER or set(line.pieces).intersection(mark.pieces):
                 continue
-            (x, y), reach = _middle(mark.outline), ON_LINE * extent
+            (x, y), reach = mark.middle, ON_LINE * extent
             if x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach:
                 off = np.hypot(*(_dense(line.outline) - (x, y)).T).min()
                 if off < reach and not self.around(mark, 0.0):

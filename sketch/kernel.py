@@ -20,6 +20,7 @@ __all__ = [
     "Shaft",
     "Strokes",
     "along",
+    "beside",
     "course",
     "cuts",
     "depth",
@@ -51,6 +52,9 @@ _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _pointer, _pointer, _dou
 _along = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 4, _int, _double, _pointer, _pointer)(("ink_along", _lib))
 _heads = ctypes.CFUNCTYPE(None, _int, *[_pointer] * 5, _int, _pointer, *[_double] * 3, _pointer, _pointer)(
     ("ink_heads", _lib)
+)
+_beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
+    ("ink_beside", _lib)
 )
 _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
 _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, _pointer)(
@@ -285,6 +289,19 @@ def along(
     )
     x0, y0, x1, y1 = box.tolist()
     return found[:count].tolist(), (x0, y0, x1, y1)
+
+
+def beside(boxes: Array, bodies: Array) -> list[list[int]]:
+    """Pairs of a box of marks, (n, 4), and a body, (m, 5), that can matter to them (see core/beside.c), in order."""
+    room = 16 * len(boxes)
+    while True:
+        pairs = np.empty((room, 2), dtype=np.int32)
+        at = boxes.ctypes.data, len(boxes), bodies.ctypes.data, len(bodies), pairs.ctypes.data
+        count = _beside(*at, room)
+        if count <= room:
+            found: list[list[int]] = pairs[:count].tolist()
+            return found
+        room = count
 
 
 def cuts(points: Array) -> tuple[list[float], list[int]]:

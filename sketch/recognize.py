@@ -209,7 +209,7 @@ def _one_a_place(candidates: list[Fitted], gains: list[float], chosen: list[int]
     order = sorted(chosen, key=lambda k: -gains[k])
     closed = [k for k in order if candidates[k].closed]
     scale = np.array([candidates[k].scale for k in closed])
-    at = np.array([candidates[k].outline.mean(axis=0) for k in closed]).reshape(-1, 2)
+    at = np.array([candidates[k].middle for k in closed]).reshape(-1, 2)
     far = SAME_PLACE * np.maximum(scale, scale[:, None])
     close = np.abs(scale - scale[:, None]) <= far
     close &= np.abs(at[:, None] - at).max(axis=2, initial=0.0) <= far
@@ -230,7 +230,7 @@ def _one_a_place(candidates: list[Fitted], gains: list[float], chosen: list[int]
 def _same_place(a: Fitted, b: Fitted) -> bool:
     if abs(a.scale - b.scale) > SAME_PLACE * max(a.scale, b.scale):
         return False
-    if math.dist(a.outline.mean(axis=0), b.outline.mean(axis=0)) > SAME_PLACE * a.scale:
+    if math.dist(a.middle, b.middle) > SAME_PLACE * a.scale:
         return False
     return all(
         abs(depth(x, y, other.outline)) < SAME_PLACE * a.scale

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,7 +32,7 @@ FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 35.0  # nats to say that something was drawn that has no meaning here
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class Fitted:
     """A primitive fitted to some ink.
 
@@ -60,6 +61,12 @@ class Fitted:
     @property
     def closed(self) -> bool:
         return self.scale > 0
+
+    @cached_property
+    def middle(self) -> tuple[float, float]:
+        """The mean of its outline's points [pixels]."""
+        x, y = (np.add.reduce(self.outline, axis=0) / len(self.outline)).tolist()
+        return x, y
 
     def together(self, costs: Mapping[int, float]) -> list[Fitted]:
         """The same with further pieces that it explains too, given what each costs: with all, or with one of them."""
