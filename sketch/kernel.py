@@ -42,7 +42,7 @@ SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/
 COURSE, HEADS = 32, 4  # as in core/course.c and core/heads.c
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 7)(
+_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 8)(
     ("ink_closed", _lib)
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
@@ -91,18 +91,19 @@ class ClosedFit(NamedTuple):
     """Readings of a closed chain of ink, in its normal frame where not said otherwise (see core/outline.c).
 
     Attributes:
-        mean: the frame's origin [pixels].  to, back: (2, 2), normal = to @ (pixel - mean) and its inverse.
+        mean: the frame's origin [pixels].  back: (2, 2), pixel = mean + back @ normal.
         ink, gap: lengths of the ink and of the gaps.
         conic: a, b, c, d, e of x² + y² = a(x² - y²) + 2bxy + cx + dy + e.
         ellipse_cost: nats to say the ink, given it.
         circle: centre and radius [pixels].  circle_cost: nats to say the ink, given it.
         residual: mean squared distance of the best k-gon, for k = 0 .. SIDES.
         cost: nats to say the ink, given that polygon.
-        corners: (SIDES + 1, SIDES, 2).
+        corners: of those polygons [pixels], (SIDES + 1, SIDES, 2).
+        rectangle: the nearest to the quadrilateral [pixels], (4, 2).  extra: what it adds to residual[4]; infinite
+            for none.
     """
 
     mean: Array
-    to: Array
     back: Array
     ink: float
     gap: float
@@ -113,10 +114,12 @@ class ClosedFit(NamedTuple):
     residual: list[float]
     cost: list[float]
     corners: Array
+    rectangle: Array
+    extra: float
 
     def vertices(self, sides: int) -> Array:
         """Corners of the best polygon of so many sides [pixels], (sides, 2)."""
-        return np.asarray(self.mean + self.corners[sides, :sides] @ self.back.T)
+        return self.corners[sides, :sides].copy()
 
 
 class Shaft(NamedTuple):
@@ -151,7 +154,7 @@ class ArrowFit(NamedTuple):
     off: list[float]
 
 
-_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1))  # of ink_closed's results, in order
+_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1), 9)  # of ink_closed's results, in order
 _OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
 
 
@@ -198,11 +201,10 @@ def fit_closed(
         hopeless,
         *[at + 8 * o for o in _OFFSETS],
     )
-    _, length, conic, residual, cost, corners, rest = _OFFSETS
+    _, length, conic, residual, cost, corners, rectangle, rest = _OFFSETS
     scalars = out[:corners].tolist()
     return ClosedFit(
         mean=out[0:2],
-        to=out[2:6].reshape(2, 2),
         back=out[6:10].reshape(2, 2),
         ink=scalars[length],
         gap=scalars[length + 1],
@@ -212,7 +214,9 @@ def fit_closed(
         circle_cost=scalars[conic + 9],
         residual=scalars[residual:cost],
         cost=scalars[cost:],
-        corners=out[corners:rest].reshape(SIDES + 1, SIDES, 2),
+        corners=out[corners:rectangle].reshape(SIDES + 1, SIDES, 2),
+        rectangle=out[rectangle + 1 : rest].reshape(4, 2).copy(),
+        extra=float(out[rectangle]),
     )
 
 

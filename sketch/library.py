@@ -9,7 +9,7 @@ from pathlib import Path
 
 __all__ = ["library"]
 
-ABI = 10  # as in core/abi.c
+ABI = 11  # as in core/abi.c
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 

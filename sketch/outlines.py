@@ -70,12 +70,10 @@ def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fi
     if math.isfinite(fit.cost[sides]):
         cost = fit.cost[sides] + said[sides] + gaps
         out.append(fitted("polygon", cost=cost, outline=fit.vertices(sides), rough=fit.cost[sides]))
-    box = _rectangle(fit) if math.isfinite(fit.cost[4]) else None
-    if box is not None:
-        corners, extra = box
+    if math.isfinite(fit.extra):
         off = fit.residual[4]
-        cost = fit.cost[4] + misfit(off + extra, count) - misfit(off, count) + BOX + gaps
-        out.append(fitted("rectangle", cost=cost, outline=corners))
+        cost = fit.cost[4] + misfit(off + fit.extra, count) - misfit(off, count) + BOX + gaps
+        out.append(fitted("rectangle", cost=cost, outline=fit.rectangle))
     least = min(f.cost for f in out)
     if FREEFORM + gaps + 3 * ARC < least:  # else it is not said in fewer however well it fits
         arcs = range(3, MOST_SIDES + 1)
@@ -154,44 +152,3 @@ def _round(fit: ClosedFit, fitted: Callable[..., Fitted], gaps: float) -> list[F
         ring = middle + math.sqrt(area) * _RING
         circle = fitted("circle", cost=cost + 0.5 * (longer / UNROUND) ** 2, outline=ring)
     return [circle, fitted("ellipse", cost=cost + ELLIPSE, outline=middle + _RING @ axes.T)]
-
-
-def _rectangle(fit: ClosedFit) -> tuple[Array, float] | None:
-    """The rectangle nearest to the best quadrilateral, and the mean squared distance that it adds, in the
-    frame.
-
-    Its direction is the sides' mean, modulo a right angle, weighted by their lengths; its sides go through
-    the middles of the quadrilateral's.
-    """
-    corners = [complex(x, y) for x, y in fit.vertices(4).tolist()]
-    sides = [b - a for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
-    lengths = [max(abs(s), 1e-9) for s in sides]
-    fourfold = sum(s**4 / n**3 for s, n in zip(sides, lengths, strict=True))
-    if fourfold == 0:
-        return None
-    turn = (fourfold / abs(fourfold)) ** 0.25
-    turned = [s / turn for s in sides]
-    along = [abs(s.real) > abs(s.imag) for s in turned]
-    if along[0] == along[1] or along[0] != along[2] or along[1] != along[3]:
-        return None
-    middles = [(c + s / 2) / turn for c, s in zip(corners, sides, strict=True)]
-    box = []
-    for k in range(4):  # corner k is where side k - 1 meets side k
-        across, level = (k, k - 1) if along[k - 1] else (k - 1, k)
-        box.append(complex(middles[across].real, middles[level].imag) * turn)
-    z = _in_frame(fit.to, box)
-    off = _in_frame(fit.to, [c - b for c, b in zip(corners, box, strict=True)])
-    extra = 0.0
-    for k in range(4):  # the mean over a side of a squared distance that is linear along it
-        edge = z[(k + 1) % 4] - z[k]
-        normal = 1j * edge / max(abs(edge), 1e-9)
-        p, q = (normal.conjugate() * off[k]).real, (normal.conjugate() * off[(k + 1) % 4]).real
-        extra += (p * p + p * q + q * q) / 12
-    if not extra < 1:
-        return None
-    return np.array([[b.real, b.imag] for b in box]), extra
-
-
-def _in_frame(to: Array, points: list[complex]) -> list[complex]:
-    (a, b), (c, d) = to.tolist()
-    return [complex(a * p.real + b * p.imag, c * p.real + d * p.imag) for p in points]

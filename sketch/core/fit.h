@@ -63,6 +63,10 @@ INK_API double ink_depth(double x, double y, const double *outline, int32_t n);
 /* Of a vector whose squares neither vanish nor overflow: in an outline's own frame. hypot takes five times as long. */
 static inline double length(double x, double y) { return sqrt(x * x + y * y); }
 
+/* The rectangle nearest to a quadrilateral, (4, 2) [pixels], and the mean squared distance that it adds in a frame with normal
+ * = to * pixel; infinite where the quadrilateral is like none. */
+double nearest_rectangle(const double *corners, const double to[4], double *box);
+
 /* Whether two pieces share no ink: rivals[from[i] .. from[i + 1]] are those that share some with piece i; from may be null. */
 int ink_apart(const int32_t *rivals, const int32_t *from, int i, int j);
 

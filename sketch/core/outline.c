@@ -295,11 +295,13 @@ static void best_polygons(const Runs *r, const double *factor, int way, double s
  * side: nats to say one more side.
  * hopeless: a first split that costs more [nats] is not looked into further.
  * cap: distances count up to this, in the frame.
- * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds; residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed
- * sides, flat corners and short sides; vertices[k][SIDES][2] in the frame. */
+ * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds;
+ * residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed sides, flat
+ * corners and short sides; vertices[k][SIDES][2] [pixels]; rectangle: what the nearest adds to residual[4], infinite for none,
+ * and its corners (8) [pixels]. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
                         double observations, double side, double hopeless, double *frame, double *length, double *round,
-                        double *residual, double *cost, double *vertices, double *scratch) {
+                        double *residual, double *cost, double *vertices, double *rectangle, double *scratch) {
     int n = part_end[parts - 1];
     Frame f = normal_frame(xy, n, least_axis);
     memcpy(frame, f.mean, sizeof f.mean);
@@ -341,4 +343,11 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, side, hopeless, residual,
                       cost, vertices);
     }
+    for (int k = 3; k <= SIDES; k++)
+        for (int q = 0; q < k && isfinite(cost[k]); q++) {
+            double *v = vertices + 2 * (SIDES * k + q), x = v[0], y = v[1];
+            v[0] = f.mean[0] + f.back[0] * x + f.back[1] * y;
+            v[1] = f.mean[1] + f.back[2] * x + f.back[3] * y;
+        }
+    rectangle[0] = isfinite(cost[4]) ? nearest_rectangle(vertices + 2 * SIDES * 4, f.to, rectangle + 1) : INFINITY;
 }
