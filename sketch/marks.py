@@ -27,6 +27,10 @@ OFTEN = (
     2.0,
 )  # times that a shaft and the barbs of an arrow are drawn: the pen comes back along a barb
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
+LOOP = (
+    0.12,
+    0.2,
+)  # of its length, what the ends of a loop are apart; of its extent, half of a wide one's thickness
 RARE = 25.0  # nats that an open line is rarer than an outline
 ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning
 THIN = 0.004  # of the length of such a line: what it is as thick as, at least
@@ -167,7 +171,12 @@ def _arrow(page: Page, fit: ArrowFit, worse: float) -> Fitted | None:
 
 
 def _within(page: Page, piece: Piece, head: Array) -> bool:
-    """Whether a piece lies within an arrow's head, given its tip and the ends of its barbs [pixels]."""
+    """Whether a piece lies within an arrow's head, given its tip and the ends of its barbs [pixels].
+
+    A wide loop does not: a barb that was gone over is a thin one, and a wheel is no part of a head.
+    """
+    if piece.gap < LOOP[0] * piece.length and piece.scale > LOOP[1] * piece.extent:
+        return False
     a, b, c = head
     if (b[0] - a[0]) * (c[1] - a[1]) < (b[1] - a[1]) * (c[0] - a[0]):
         b, c = c, b
