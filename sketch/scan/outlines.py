@@ -18,7 +18,7 @@ import numpy as np
 from sketch.scan.graph import End, Graph
 from sketch.scan.junctions import LONELY, Junction, Pairs, turn_cost
 
-__all__ = ["Choice", "close_outlines"]
+__all__ = ["SMOOTH", "Choice", "close_outlines", "ends_cost"]
 
 CLOSED = 2.5  # [rad²] what a closed outline is worth: the corner of a square that closes it
 COINCIDENCE = 0.9  # [rad²] for every further line that ends at the same place
@@ -109,12 +109,12 @@ def _options(junction: Junction) -> list[tuple[float, Pairs]]:
     for pairs in map(list, _matchings(count)):
         passing = {branch for pair in pairs for branch in pair}
         if all(i in passing or j in passing for i, j in smooth):
-            options.append((sum(cost[pair] for pair in pairs) + _ends_cost(count - len(passing)), pairs))
+            options.append((sum(cost[pair] for pair in pairs) + ends_cost(count - len(passing)), pairs))
     options.sort(key=lambda option: option[0])
     return [option for option in options if option[0] < options[0][0] + 2 * CLOSED]
 
 
-def _ends_cost(ends: int) -> float:
+def ends_cost(ends: int) -> float:
     """What it costs that lines end at a junction: that several do so at one place is no coincidence."""
     return LONELY * ends + COINCIDENCE * max(ends - 1, 0)
 

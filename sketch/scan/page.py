@@ -11,7 +11,16 @@ from numpy.typing import NDArray
 from sketch.scan.binding import pieces
 from sketch.scan.ruling import FEWEST, drop_ruling
 
-__all__ = ["Page", "drop_specks", "fill_pinholes", "holes", "hollow_fills", "ink_mask", "read_page"]
+__all__ = [
+    "Page",
+    "drop_specks",
+    "fill_grain",
+    "fill_holes",
+    "holes",
+    "hollow_fills",
+    "ink_mask",
+    "read_page",
+]
 
 Image = NDArray[Any]  # uint8
 
@@ -31,7 +40,10 @@ STAIN = 0.006  # of the picture's size, to either side: what is wider is a stain
 EDGE = 3.0  # [pixels] to either side: ink ends within
 SOFT = 0.5  # of a stain's darkness: less than this changes there
 SPECK = 3.5  # pen widths
-PINHOLE = 1.0  # squares of the pen width: a ring around a smaller hole is a blot
+PINHOLE = 0.3
+GRAIN = 1.0  # squares of the pen width: larger holes are no grain,
+WITHIN = 0.8  # pen widths from the paper: nothing within one line is as far,
+PINHOLE = 0.3  # squares of the pen width: and nobody draws around a smaller hole
 FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
 CREST = 1.2  # of a line's darkness: what is next to it may be as dark
 LEAST_LINK = 3.0  # [pixels]: what is shorter and leads nowhere is a bump of an edge
@@ -375,10 +387,32 @@ def hollow_fills(mask: Image, distance: NDArray[Any], pen: float) -> bool:
     return True
 
 
-def fill_pinholes(mask: Image, pen: float) -> bool:
-    """Fill the holes, in place, that are too small for a pen `pen` pixels wide to have gone around them."""
+def fill_holes(mask: Image, largest: float) -> bool:
+    """Fill the holes, in place, that are smaller than `largest` [pixels]; returns whether there were any."""
     import cv2
 
-    tiny = [way for way, area in holes(mask) if area < PINHOLE * pen * pen]
+    tiny = [way for way, area in holes(mask) if area < largest]
     cv2.drawContours(mask, tiny, -1, 1, cv2.FILLED)
     return bool(tiny)
+
+
+def fill_grain(mask: Image, pen: float) -> bool:
+    """Fill the holes, in place, that the paper's grain leaves within a line; returns whether there were any.
+
+    A hole between lines has a line's width of ink around it, however small it is.
+    """
+    import cv2
+
+    small = [(way, area) for way, area in holes(mask) if area < GRAIN * pen * pen]
+    if not small:
+        return False
+    whole = mask.copy()
+    cv2.drawContours(whole, [way for way, _ in small], -1, 1, cv2.FILLED)
+    distance = cv2.distanceTransform(whole, cv2.DIST_L2, 3)
+    within = [
+        way
+        for way, area in small
+        if area < PINHOLE * pen * pen or distance[way[:, 0, 1], way[:, 0, 0]].max() < WITHIN * pen
+    ]
+    cv2.drawContours(mask, within, -1, 1, cv2.FILLED)
+    return bool(within)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.graph import Edge, Graph, Ink
-from sketch.scan.page import holes
+from sketch.scan.page import fill_holes, holes
 from sketch.scan.ways import Way
 
 __all__ = ["find_rings", "take_rings"]
@@ -24,6 +24,7 @@ __all__ = ["find_rings", "take_rings"]
 Points = NDArray[np.float64]
 
 SMALLEST, LARGEST = 0.9, 4.5  # pen widths: the radius of the ring that the pen's middle went along
+CHINK = 1.0  # squares of the pen width: a smaller hole is one between lines that cross, for all one can tell
 RAYS = 48  # directions in which the belt is looked for
 DRAWN = 0.9  # the share of the rays that must meet the belt
 OUT_OF_ROUND = 0.09  # deviation from a circle, a share of its radius: a square has 0.11, a triangle 0.24
@@ -41,6 +42,11 @@ def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[W
 
     mask: ink 1, paper 0, shape (h, w).  distance: each ink pixel's distance to the paper.  Their ink is not known yet.
     """
+    import cv2
+
+    mask = mask.copy()
+    if fill_holes(mask, CHINK * pen * pen):
+        distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     found = sorted(
         (ring for seed in _seeds(mask, distance, pen) for ring in _belt(mask, seed, pen)), key=lambda r: -r[0]
     )

@@ -61,11 +61,16 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         names: Ink = {name: points for i in c.pieces for name, points in ink[i].items()}
         own = sum(page.pieces[i].unread for i in c.pieces)
         strain = sum(ways[page.pieces[i].stroke].strain for i in c.pieces)
-        gain = (1 - c.cost / own) * sum(free.get(name, 0.0) for name in names) - STRAIN * strain
-        if gain > 0 and c.kind != "cross":
-            near = [max(OFF * min(scale[name], c.scale or np.inf), pen) for name in names]
-            off = _off(c, [some[name] for name in names]) > near
-            gain -= sum(free.get(name, 0.0) for name, far in zip(names, off.tolist(), strict=True) if far)
+        said = sum(free.get(name, 0.0) for name in names)
+        # ink that is freely said in more strokes than these is a coarser measure of their cost, never a finer one
+        gain = said - c.cost * max(said / own, 1.0) - STRAIN * strain
+        # the strokes of a cross, and of an arrow in one stroke, are judged as a whole
+        if gain > 0 and c.kind != "cross" and not (c.kind == "arrow" and len(c.pieces) == 1):
+            tails = {name for i in c.pieces for name in ways[page.pieces[i].stroke].tail}
+            body = [name for name in names if name not in tails]
+            near = [max(OFF * min(scale[name], c.scale or np.inf), pen) for name in body]
+            off = _off(c, [some[name] for name in body]) > near
+            gain -= sum(free.get(name, 0.0) for name, far in zip(body, off.tolist(), strict=True) if far)
         if gain > 0:
             candidates.append(c)
             taken.append(tuple(names))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +31,7 @@ class Layout:
     def __init__(self, graph: Graph, junctions: list[Junction], pen: float) -> None:
         self.graph, self.pen = graph, pen
         self.branch_of = {branch.end: branch for junction in junctions for branch in junction.branches}
+        self.junction_of = {branch.end: junction for junction in junctions for branch in junction.branches}
         self.meeting = graph.branches()
         self.lengths = [edge.length for edge in graph.edges]
         self._ways: dict[tuple[End, End], Points] = {}
@@ -60,6 +63,22 @@ class Layout:
             off = np.hypot(*(bridge[:, None] - straight[None]).transpose(2, 0, 1)).min(axis=1).max()
             return straight if off < self.pen else bridge
         return bridge
+
+    def along(self, way: Sequence[End], *, closed: bool) -> tuple[Course, Links]:
+        """The course along edges, given by the ends at which they are entered, and the links that it uses."""
+        course, links = Course(list(way), closed=closed), Links()
+        for (e, side), enter in pairwise([*way, way[0]] if closed else way):
+            leave = (e, 1 - side)
+            via = np.empty((0, 2))
+            if leave in self.junction_of:
+                junction = self.junction_of[leave]
+                i, j = (
+                    next(k for k, b in enumerate(junction.branches) if b.end == end) for end in (leave, enter)
+                )
+                links.update(self.links(junction, [(i, j)]))
+                via = links[leave][1]
+            course.via.append(via)
+        return course, links
 
     def shortest(
         self,
@@ -127,17 +146,17 @@ class Layout:
         return None if a != b and not edges else (way, edges)
 
     def joined(self, first: Course, second: Course) -> list[Course]:
-        """Two open courses as one, where other ink leads from an end of one to an end of the other."""
+        """Two open courses as one, where an end of one is at an end of the other, or other ink leads there."""
         longest = SHARED_SIDE * (self.length(first) + self.length(second))
         own = {e for e, _ in first.steps + second.steps}
         out = []
         for a in (first, first.reversed()):
             for b in (second, second.reversed()):
                 start, goal = self.ends(a)[1], self.ends(b)[0]
-                if start < 0 or goal < 0 or start == goal:
+                if start < 0 or goal < 0:
                     continue
                 way, edges = self.shortest(start, goal, longest, without=own)
-                if edges:
+                if edges or start == goal:
                     out.append(Course(a.steps + b.steps, [*a.via, way, *b.via]))
         return out
 

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from sketch.scan.binding import thin, trace
 from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.graph import build_graph
-from sketch.scan.page import Page, drop_specks, fill_pinholes, hollow_fills, ink_mask, read_page
+from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
 from sketch.scan.ridge import centre_on_ink
 from sketch.scan.rings import find_rings, take_rings
 from sketch.scan.settle import settle
+from sketch.scan.tails import with_tails
 from sketch.scan.ways import Way, Ways
 
 __all__ = ["Traced", "trace_picture"]
@@ -110,7 +111,7 @@ def _strokes(seen: Traced) -> list[Points]:
         return []
     seen.specks = drop_specks(mask, pen)
     hollowed = hollow_fills(mask, distance, pen)
-    if fill_pinholes(mask, pen) or hollowed:
+    if fill_grain(mask, pen) or hollowed:
         skeleton, size = thin(mask)
         distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     else:
@@ -132,6 +133,7 @@ def _strokes(seen: Traced) -> list[Points]:
         known = {frozenset(way.ink) for way in likeliest + others}
         more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
         others += [_drawn(way, seen) for way in more]
+    others += with_tails(likeliest + others, pen * seen.scale)
     if others:
         height, width = mask.shape
         chosen = settle(likeliest, others, pen * seen.scale, width * seen.scale, height * seen.scale)

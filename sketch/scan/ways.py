@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.courses import Course, Links, follow, through
+from sketch.scan.faces import faces, shared_sides
 from sketch.scan.graph import Graph, Ink
 from sketch.scan.junctions import find_junctions
 from sketch.scan.outlines import Choice, close_outlines
 from sketch.scan.strokes import Layout
+from sketch.scan.unlifted import unlifted
 
 __all__ = ["Way", "Ways", "trace_strokes"]
 
@@ -35,19 +37,20 @@ class Way:
 
     points: [pixels], shape (n, 2).  ink: the stretches of the skeleton that it accounts for, and where each is; what
     it only borrows from other strokes is not among them.  strain: the cost of its turns and ends at junctions
-    [rad²].
+    [rad²].  tail: of the ink, that of an end which goes on beside the beginning.
     """
 
     points: Points
     ink: Ink
     strain: float = 0.0
+    tail: frozenset[int] = frozenset()
 
 
 class Ways:
     """The strokes that a graph may be made of. pen: the width of the pen [pixels]."""
 
     def __init__(self, graph: Graph, pen: float) -> None:
-        junctions = find_junctions(graph, pen)
+        self._junctions = junctions = find_junctions(graph, pen)
         self._graph = graph
         self._inner = {e for junction in junctions for e in junction.bridges}
         smoothest = [(junction, junction.pairs) for junction in junctions]
@@ -95,6 +98,9 @@ class Ways:
             if signature not in seen and not self._layout.is_crumb(course):
                 seen.add(signature)
                 out += [self._way(course, self._smoothest), *self._closed(course, self._smoothest)]
+        for course, links, strain in unlifted(self._layout, self._inner):
+            out.append(replace(self._way(course, links), strain=strain))
+        out += self._faces()
         for choices in _combined(self._choices):
             links = dict(self._links)
             for choice in choices:
@@ -109,6 +115,18 @@ class Ways:
                         continue
                     seen.add(signature)
                     out += [self._way(course, links), *self._closed(course, links)]
+        return out
+
+    def _faces(self) -> list[Way]:
+        """The outlines of pieces of paper that lines enclose, each with all its ink, and without sides of others."""
+        out = []
+        found = faces(self._junctions, self._layout)
+        for k, face in enumerate(found):
+            for lent in [frozenset[int](), *shared_sides(found, k)]:
+                ink: Ink = {}
+                for e in face.edges - lent:
+                    ink.update(self._graph.edges[e].ink)
+                out.append(Way(face.points, ink, face.strain))
         return out
 
     def _closed(self, course: Course, links: Links) -> list[Way]:

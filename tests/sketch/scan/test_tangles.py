@@ -115,3 +115,41 @@ def test_the_likeliest_strokes_share_no_ink_and_take_all_of_it() -> None:
     half = frozenset(list(everything)[::2])
     left = set().union(*(way.ink for way in ways.likeliest(without=half)))
     assert left.isdisjoint(half)
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_boxes_that_stand_on_one_another_are_whole(pen: float) -> None:
+    boxes: list[Line] = [
+        [(x, y), (x + w, y), (x + w, y + 70), (x, y + 70), (x, y)]
+        for x, y, w in ((60, 300, 400), (150, 230, 200), (170, 160, 150), (185, 90, 120))
+    ]
+    scene = read([[(px, py + 2 * (k % 2)) for px, py in box] for k, box in enumerate(boxes)], pen)
+    assert kinds(scene) == ["rectangle"] * 4
+    assert not scene.notes[0].startswith("left out")
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_an_arrow_whose_barb_was_gone_over_is_one_arrow(pen: float) -> None:
+    tip = (250.0, 220.0)
+    arrow: Line = [(250, 60), tip, (225, 190), (214, 160), (226, 158), (236, 190), (252, 223), (285, 175)]
+    scene = read([arrow, [(x, y + 80) for x, y in BOX]], pen)
+    assert kinds(scene) == ["rectangle"]
+    assert scene.gravity[1] < -9
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_a_tail_where_an_outline_ends_is_the_outline_s(pen: float) -> None:
+    ring = circle(250, 200, 90)
+    tail: Line = [(318, 200), (330, 192), ring[0]]
+    scene = read([[*tail, *ring[1:]]], pen)
+    assert kinds(scene) == ["circle"]
+    assert not any("left out" in note for note in scene.notes)
+
+
+def test_the_least_movement_along_all_lines_goes_over_the_shortest_twice() -> None:
+    ink = inked([[(100, 20), (100, 320)], [(100, 320), (60, 360)], [(100, 320), (180, 400)]], 4.0) > 0.5
+    mask = ink.astype(np.uint8)
+    skeleton, size = thin(mask)
+    graph = build_graph(trace(skeleton, size), cv2.distanceTransform(mask, cv2.DIST_L2, 3), 4.0)
+    lengths = [np.hypot(*np.diff(way.points, axis=0).T).sum() for way in Ways(graph, 4.0).others()]
+    assert max(lengths) == pytest.approx(300 + 2 * 56.6 + 113.1, abs=12)
