@@ -18,7 +18,7 @@ from sketch.context import Context
 from sketch.proposals import Proposals, proposing
 from sketch.scan.graph import Ink
 from sketch.scan.ways import Way
-from sketch.scoring import Fitted
+from sketch.scoring import STRANGE, Fitted
 from sketch.search import best_packing
 
 __all__ = ["settle"]
@@ -44,13 +44,15 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
     proposals.add([way.points for way in ways])
     page = proposals.page
     free: dict[int, float] = {}  # nats to say each stretch of ink freely, as strokes of the likeliest ways
+    strange: dict[int, float] = {}  # of these, for being a stroke of its own
     scale: dict[int, float] = {}  # [pixels] of the smallest thing that it may be part of
     for p in page.pieces.values():
         stretches = ink[p.stroke]
         scale.update((name, min(p.scale, scale.get(name, np.inf))) for name in stretches)
         if p.stroke < len(likeliest):
-            rate = p.unread / max(sum(map(len, stretches.values())), 1)
-            free.update((name, rate * len(points)) for name, points in stretches.items())
+            count = max(sum(map(len, stretches.values())), 1)
+            free.update((name, p.unread / count * len(points)) for name, points in stretches.items())
+            strange.update((name, STRANGE / count * len(points)) for name, points in stretches.items())
     some = {name: points[:: len(points) // SAMPLES + 1] for names in ink for name, points in names.items()}
     candidates: list[Fitted] = []
     taken: list[tuple[int, ...]] = []
@@ -61,12 +63,12 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         names: Ink = {name: points for i in c.pieces for name, points in ink[i].items()}
         own = sum(page.pieces[i].unread for i in c.pieces)
         strain = sum(ways[page.pieces[i].stroke].strain for i in c.pieces)
-        said = sum(free.get(name, 0.0) for name in names)
+        tails = {name for i in c.pieces for name in ways[page.pieces[i].stroke].tail}
+        said = sum(free.get(name, 0.0) for name in names) - sum(strange.get(name, 0.0) for name in tails)
         # ink that is freely said in more strokes than these is a coarser measure of their cost, never a finer one
         gain = said - c.cost * max(said / own, 1.0) - STRAIN * strain
         # the strokes of a cross, and of an arrow in one stroke, are judged as a whole
         if gain > 0 and c.kind != "cross" and not (c.kind == "arrow" and len(c.pieces) == 1):
-            tails = {name for i in c.pieces for name in ways[page.pieces[i].stroke].tail}
             body = [name for name in names if name not in tails]
             near = [max(OFF * min(scale[name], c.scale or np.inf), pen) for name in body]
             off = _off(c, [some[name] for name in body]) > near
