@@ -31,6 +31,7 @@ LOOP = (
     0.12,
     0.2,
 )  # of its length, what the ends of a loop are apart; of its extent, half of a wide one's thickness
+OFF_BAR = 0.22  # of an X's half extent: ink further from its bars is said in fewer nats freely than as theirs
 RARE = 25.0  # nats that an open line is rarer than an outline
 ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning
 THIN = 0.004  # of the length of such a line: what it is as thick as, at least
@@ -88,9 +89,10 @@ def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fi
     length = sum(p.length for p in parts)
     count = sum(p.observations for p in parts)
     best = None
-    for bends in ((3,), (4,), (5,)) if len(parts) == 1 else ((1, 1), (1, 2), (2, 1), (1, 3), (3, 1), (2, 2)):
+    single = len(parts) == 1
+    for bends in ((3,), (4,), (5,)) if single == 1 else ((1, 1), (1, 2), (2, 1), (1, 3), (3, 1), (2, 2)):
         off = sum(misfit_of(p, p.residual[n]) for p, n in zip(parts, bends, strict=True))
-        if 6 * PARAMETER + off > most:
+        if 6 * PARAMETER + off > most and not single:
             continue
         sides = [
             (part, k, a, b, math.dist(a, b))
@@ -108,13 +110,30 @@ def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fi
             odd = _crossing(a, b, c, d)
             if odd is None:
                 continue
-            cost = 6 * PARAMETER + (off + extra) + odd[0] + odd[1]
+            said = off + extra
+            if single and 7 * PARAMETER + FREE * count * joining + odd[0] + odd[1] < most:
+                # what joins them may go any way
+                said = min(said, PARAMETER + _joined(page, parts[0], np.array([a, b, c, d])))
+            cost = 6 * PARAMETER + said + odd[0] + odd[1]
             if cost <= most and (best is None or cost < best[0]):
                 best, most = (cost, a, b, c, d), cost
     if best is None:
         return None
     cost, a, b, c, d = best
     return Fitted("cross", names, cost, np.array([a, b, c, d]), figure=np.array([a, b, d, a, c, b, c, d, c]))
+
+
+def _joined(page: Page, piece: Piece, bars: Array) -> float:
+    """Nats to say a stroke's ink, given two bars, (4, 2), on which most of it lies, and what joins them freely."""
+    ink = page.strokes.samples[piece.stroke]
+    from_start = ink[:, None] - bars[::2]
+    along = bars[1::2] - bars[::2]
+    t = np.clip((from_start * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
+    square = ((from_start - t[..., None] * along) ** 2).sum(axis=2).min(axis=1)
+    on = square < (OFF_BAR * piece.extent / 2) ** 2
+    share = float(on.mean())
+    mean = float(square[on].mean()) / (piece.extent / 2) ** 2 if share else 0.0
+    return misfit(mean, share * piece.observations) + FREE * (1 - share) * piece.observations
 
 
 def _crossing(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> tuple[float, float] | None:
