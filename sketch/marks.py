@@ -16,6 +16,9 @@ from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
 __all__ = ["line_of_any_course", "read_arrows", "read_bar", "read_cross", "read_line", "with_strays"]
 
 MOST_BENDS = 5
+STRAIGHT = (
+    0.02  # of its half extent: usual spread of a rod's ink; what is off by much more is bent on purpose
+)
 BEND = 3.0  # nats for each corner of a bar
 SHARP = 12.0  # nats that a right angle is rarer in a bar, one that folds it back twice that
 HEAD = 2.0  # nats an observation to say ink freely, where it lies within an arrow's head
@@ -49,7 +52,8 @@ def read_bar(piece: Piece) -> Fitted | None:
         said = 2 * (k + 1) * PARAMETER
         if said + BEND * (k - 1) > best:
             break
-        cost = misfit_of(piece, piece.residual[k]) + said + BEND * (k - 1)
+        bowed = 0.5 * piece.residual[k] / (STRAIGHT * max(piece.scale, 1e-9)) ** 2
+        cost = misfit_of(piece, piece.residual[k]) + bowed + said + BEND * (k - 1)
         if cost > best:
             continue
         cost += SHARP * _turning(piece.vertices[k][: k + 1])
