@@ -1,0 +1,172 @@
+"""What lies near what, asked of the C library: the same as by looking at every pair."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from pages import page
+
+from sketch.kernel import along, beside, fit_closed, measure, off_outline
+from sketch.loose import LooseEnds
+from sketch.pieces import page_of
+
+Array = NDArray[np.float64]
+
+LOOSE, REACH = 0.3, 0.45  # as in core/chains.c
+
+
+def scattered(seed: int, count: int) -> list[Array]:
+    rng = np.random.default_rng(seed)
+    return [rng.uniform(0, 300, (1, 2)) + np.cumsum(rng.normal(0, 25, (9, 2)), axis=0) for _ in range(count)]
+
+
+def closings(ends: Array, length: Array, start: int, rivals: list[set[int]]) -> dict[tuple[int, ...], float]:
+    """Of each set of pieces that closes the gaps of its tightest order, by trying all orders and directions."""
+    found: dict[tuple[int, ...], float] = {}
+    later = range(start + 1, len(length))
+    for count in range(4):
+        for names in itertools.permutations(later, count):
+            if any(j in rivals[i] for i in (start, *names) for j in (start, *names)):
+                continue
+            for ways in itertools.product((0, 1), repeat=count):
+                gaps, ink, at, ok = 0.0, length[start], ends[start, 1], True
+                last = start
+                for j, e in zip(names, ways, strict=True):
+                    gap = math.dist(at, ends[j, e])
+                    gaps, ink = gaps + gap, ink + length[j]
+                    ok &= gap <= REACH * (length[last] + length[j]) and gaps <= 2 * LOOSE * ink
+                    at, last = ends[j, 1 - e], j
+                gaps += math.dist(at, ends[start, 0])
+                key = tuple(sorted((start, *names)))
+                if ok and gaps <= LOOSE * ink and gaps < found.get(key, math.inf):
+                    found[key] = gaps
+    return found
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_chains_are_those_of_all_orders(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    count = 4  # so few that each end sees all others
+    ends = rng.uniform(0, 60, (count, 2, 2))
+    length = rng.uniform(40, 120, count)
+    rivals: list[set[int]] = [set() for _ in range(count)]
+    if seed % 2:
+        rivals[1], rivals[2] = {2}, {1}
+    loose = LooseEnds(rivals if seed % 2 else ())
+    loose.add(ends, length)
+    for piece in range(count):
+        loose.loosen(piece)
+    for start in range(count):
+        chains, _ = loose.chains(start)
+        found = {tuple(sorted(i for i, _ in chain)): gap for gap, _, chain in chains}
+        assert found == pytest.approx(closings(ends, length, start, rivals))
+
+
+def test_chains_after_pieces_came_and_went_are_those_from_scratch() -> None:
+    rng = np.random.default_rng(5)
+    ends, length = rng.uniform(0, 400, (30, 2, 2)), rng.uniform(30, 150, 30)
+    grown = LooseEnds()
+    for k in range(30):
+        grown.add(ends[k : k + 1], length[k : k + 1])
+        grown.loosen(k)
+        for start in range(k):
+            grown.chains(start)
+    for k in range(0, 30, 3):
+        grown.tighten(k)
+    at_once = LooseEnds()
+    at_once.add(ends, length)
+    for k in set(range(30)) - set(range(0, 30, 3)):
+        at_once.loosen(k)
+    for start in range(30):
+        assert grown.chains(start) == at_once.chains(start)
+
+
+def test_who_looked_at_an_end_hears_of_new_neighbours() -> None:
+    loose = LooseEnds()
+    loose.add(np.array([[[0.0, 0], [100, 0]], [[104, 0], [104, 80]]]), np.array([100.0, 80]))
+    loose.loosen(0)
+    assert loose.chains(0)[1] == {1}
+    assert loose.loosen(1) == {1}
+    loose.chains(0)
+    assert 1 in loose.tighten(1)
+
+
+def test_heads_are_the_nearest_small_strokes() -> None:
+    ink = page_of(page(scattered(1, 60)))
+    shaft = ink.pieces[0]
+    for limits in ((40.0, 120.0, 90.0), (80.0, 200.0, 200.0)):
+        reach, span, size = limits
+        for tip, near in zip(shaft.ends, ink.heads(shaft, shaft.ends, *limits), strict=True):
+            gaps = {i: np.hypot(*(p.points - tip).T) for i, p in ink.pieces.items() if i and p.extent <= size}
+            fit = sorted((d.min(), i) for i, d in gaps.items() if d.min() < reach and d.max() < span)
+            assert near == [i for _, i in fit[:4]]
+
+
+def test_ink_along_an_outline_and_its_distance() -> None:
+    strokes = scattered(2, 80)
+    ink = page_of(page(strokes))
+    t = np.linspace(0, 2 * math.pi, 24, endpoint=False)
+    ring = np.stack([150 + 140 * np.cos(t), 150 + 140 * np.sin(t)], axis=1)
+    near = {p.index for p in ink.along(ring, 30.0)}
+    off = off_outline(ink.strokes, list(ink.pieces), ring)
+    for p, square in zip(ink.pieces.values(), off, strict=True):
+        samples = ink.strokes.samples[p.index]
+        sides = np.roll(ring, -1, axis=0) - ring
+        to = samples[:, None] - ring
+        share = np.clip((to * sides).sum(axis=2) / (sides**2).sum(axis=1), 0, 1)
+        d2 = ((to - share[..., None] * sides) ** 2).sum(axis=2).min(axis=1)
+        assert square == pytest.approx(d2.mean())
+        x0, y0, x1, y1 = p.box
+        inside = min(x0, y0) >= 150 - 170 and max(x1, y1) <= 150 + 170
+        places = math.sqrt(d2[[0, 16, 31, 47]].mean()) < 0.3 * max(p.scale, p.extent / 2)
+        assert (p.index in near) == (inside and places)
+    empty = measure([])
+    assert along(np.empty((0, 4)), empty, np.empty(0), ring, 1.0)[0] == []
+
+
+def test_bodies_beside_marks_however_many() -> None:
+    rng = np.random.default_rng(3)
+    low = rng.uniform(0, 100, (40, 2))
+    boxes = np.concatenate([low, low + rng.uniform(0, 60, (40, 2))], axis=1)
+    boxes[7] = (math.inf, math.inf, -math.inf, -math.inf)  # where nothing is proposed
+    low = rng.uniform(0, 100, (70, 2))
+    high = low + rng.uniform(0, 300, (70, 2))
+    extent = np.hypot(*(high - low).T)
+    bodies = np.column_stack([low, high, extent])
+    wanted = []
+    for m, (x0, y0, x1, y1) in enumerate(boxes.tolist()):
+        for b, (left, top, right, bottom, long) in enumerate(bodies.tolist()):
+            r = max(0.1 * long, math.hypot(x1 - x0, y1 - y0))
+            if m != 7 and left - r <= x1 and top - r <= y1 and right + r >= x0 and bottom + r >= y0:
+                wanted.append([m, b])
+    assert len(wanted) > 16 * len(boxes)  # more than there is room for at first
+    assert beside(boxes, bodies) == wanted
+
+
+def drawn(corners: Array) -> Array:
+    """A closed outline through some corners, 40 points a side."""
+    t = np.linspace(0, 1, 40, endpoint=False)[:, None]
+    return np.concatenate([a + t * (b - a) for a, b in itertools.pairwise([*corners, corners[0]])])
+
+
+@pytest.mark.parametrize("angle", np.linspace(0, 2 * math.pi, 7))
+def test_the_nearest_rectangle_goes_through_the_sides_middles(angle: float) -> None:
+    turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    ink = drawn(np.array([[0.0, 0], [200, 0], [200, 110], [0, 90]]))
+    fit = fit_closed([(ink - (100, 50)) @ turn + 500], 0.5, 0.3, 30.0, 8.0, math.inf)
+    box = (fit.rectangle - 500) @ turn.T + (100, 50)
+    sides = np.hypot(*(np.roll(box, -1, axis=0) - box).T)
+    assert sorted(sides) == pytest.approx([100, 100, 200, 200], rel=0.03)
+    assert np.dot(box[1] - box[0], box[2] - box[1]) == pytest.approx(0, abs=1e-6)
+    assert 0 < fit.extra < 0.02
+
+
+def test_a_lozenge_is_far_from_every_rectangle() -> None:
+    fit = fit_closed(
+        [drawn(np.array([[0.0, 0], [100, 30], [200, 0], [100, -30]]))], 0.5, 0.3, 30.0, 8.0, math.inf
+    )
+    assert fit.extra > 0.1
