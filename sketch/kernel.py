@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.library import library
+from sketch.library import address, library
 
 __all__ = [
     "SIDES",
@@ -171,7 +171,7 @@ def measure(strokes: list[Array]) -> Strokes:
         np.empty((count, LEGS + 1)),
         np.empty((count, BENDS + 1, BENDS + 1, 2)),
     )
-    _strokes(xy.ctypes.data, ends.ctypes.data, count, *(part.ctypes.data for part in out))
+    _strokes(address(xy), address(ends), count, *(address(part) for part in out))
     return out
 
 
@@ -189,10 +189,10 @@ def fit_closed(
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
     ends = np.cumsum([len(p) for p in parts], dtype=np.int32)
     out = np.empty(_OFFSETS[-1] + 2 * len(xy))
-    at = out.ctypes.data
+    at = address(out)
     _closed(
-        xy.ctypes.data,
-        ends.ctypes.data,
+        address(xy),
+        address(ends),
         len(parts),
         least_axis,
         cap,
@@ -233,10 +233,10 @@ def fit_arrows(
     given = np.array([*free, *(v for s in shafts for point in s[2:] for v in point)])
     most = sum(len(s.names) ** 2 for s in shafts)
     groups, fits = np.empty((most, 4), dtype=np.int32), np.empty((most, 19))
-    at, values = which.ctypes.data, given.ctypes.data
+    at, values = address(which), address(given)
     count = _arrows(
-        strokes.samples.ctypes.data,
-        strokes.measure.ctypes.data,
+        address(strokes.samples),
+        address(strokes.measure),
         at,
         values,
         at + 4 * len(names),
@@ -244,8 +244,8 @@ def fit_arrows(
         at + 4 * (len(names) + len(ends)),
         values + 8 * len(names),
         slack,
-        fits.ctypes.data,
-        groups.ctypes.data,
+        address(fits),
+        address(groups),
     )
     found = []
     for (g, *group), v in zip(groups[:count].tolist(), fits[:count].tolist(), strict=True):
@@ -267,9 +267,9 @@ def heads(
     ink: of all pieces their boxes, measures and points.  limits: reach, span and size [pixels].
     """
     given, out = np.array(tips), np.empty(2 * HEADS + 2, dtype=np.int32)
-    at = out.ctypes.data
-    of = [part.ctypes.data for part in ink]
-    _heads(len(ink[0]), *of, *rivals, shaft, given.ctypes.data, *limits, at, at + 8 * HEADS)
+    at = address(out)
+    of = [address(part) for part in ink]
+    _heads(len(ink[0]), *of, *rivals, shaft, address(given), *limits, at, at + 8 * HEADS)
     *near, first, second = out.tolist()
     return near[:first], near[HEADS : HEADS + second]
 
@@ -282,14 +282,14 @@ def along(
     found, box = np.empty(len(boxes), dtype=np.int32), np.empty(4)
     count = _along(
         len(boxes),
-        boxes.ctypes.data,
-        strokes.samples.ctypes.data,
-        sizes.ctypes.data,
-        outline.ctypes.data,
+        address(boxes),
+        address(strokes.samples),
+        address(sizes),
+        address(outline),
         len(outline),
         reach,
-        box.ctypes.data,
-        found.ctypes.data,
+        address(box),
+        address(found),
     )
     x0, y0, x1, y1 = box.tolist()
     return found[:count].tolist(), (x0, y0, x1, y1)
@@ -300,7 +300,7 @@ def beside(boxes: Array, bodies: Array) -> list[list[int]]:
     room = 16 * len(boxes)
     while True:
         pairs = np.empty((room, 2), dtype=np.int32)
-        at = boxes.ctypes.data, len(boxes), bodies.ctypes.data, len(bodies), pairs.ctypes.data
+        at = address(boxes), len(boxes), address(bodies), len(bodies), address(pairs)
         count = _beside(*at, room)
         if count <= room:
             found: list[list[int]] = pairs[:count].tolist()
@@ -312,7 +312,7 @@ def cuts(points: Array) -> tuple[list[float], list[int]]:
     """Where a stroke, (n, 2), may go on from one thing to the next: shares of its length, 0 and 1 among them, and
     what the parts between look like: 0 a loop, 1 a straight line, 2 a way (see core/cut.c)."""
     shares, kinds = np.empty(PARTS + 1), np.empty(PARTS, dtype=np.int32)
-    count = _cut(points.ctypes.data, len(points), shares.ctypes.data, kinds.ctypes.data)
+    count = _cut(address(points), len(points), address(shares), address(kinds))
     return ([0.0, 1.0], [0]) if count < 2 else (shares[: count + 1].tolist(), kinds[:count].tolist())
 
 
@@ -323,19 +323,19 @@ def course(points: Array, pen: float) -> Array | None:
     """
     line = np.empty((COURSE + 1, 2))
     given = np.ascontiguousarray(points)
-    return line if _course(given.ctypes.data, len(given), pen, line.ctypes.data) else None
+    return line if _course(address(given), len(given), pen, address(line)) else None
 
 
 def off_outline(strokes: Strokes, names: Sequence[int], outline: Array) -> list[float]:
     """Mean squared distances of some strokes from a closed outline, (n, 2) [pixels]."""
     which, off = np.array(names, dtype=np.int32), np.empty(len(names))
     _off_outline(
-        strokes.samples.ctypes.data,
-        which.ctypes.data,
+        address(strokes.samples),
+        address(which),
         len(names),
-        outline.ctypes.data,
+        address(outline),
         len(outline),
-        off.ctypes.data,
+        address(off),
     )
     return off.tolist()
 
@@ -347,16 +347,16 @@ def place(ink: Array, corners: Array, sides: int, rectangle: bool = False) -> Ar
     points = np.empty((3 * n + 2, 2))
     points[:n] = ink
     out = np.array(corners, dtype=np.float64)
-    at = points.ctypes.data
-    found = n > 1 and _placed(at, n, at + 16 * n, out.ctypes.data, sides, rectangle)
+    at = address(points)
+    found = n > 1 and _placed(at, n, at + 16 * n, address(out), sides, rectangle)
     return out if found else None
 
 
 def is_simple(outline: Array) -> bool:
     """Whether no two sides of a closed outline, (n, 2), cross or touch."""
-    return bool(_is_simple(outline.ctypes.data, len(outline)))
+    return bool(_is_simple(address(outline), len(outline)))
 
 
 def depth(x: float, y: float, outline: Array) -> float:
     """Distance of a point from a closed outline, (n, 2) [pixels]; negative inside."""
-    return float(_depth(x, y, outline.ctypes.data, len(outline)))
+    return float(_depth(x, y, address(outline), len(outline)))

@@ -6,10 +6,14 @@ import ctypes
 import functools
 import sys
 from pathlib import Path
+from typing import Any
 
-__all__ = ["library"]
+from numpy.typing import NDArray
+
+__all__ = ["address", "library"]
 
 ABI = 11  # as in core/abi.c
+_byte = ctypes.c_char
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 
@@ -21,3 +25,11 @@ def library() -> ctypes.CDLL:
     if not hasattr(found, "ink_abi") or found.ink_abi() != ABI:
         raise ImportError(f"{path.name} does not belong to this version; install the project again")
     return found
+
+
+def address(array: NDArray[Any]) -> int:
+    """Where an array's values are, for the library: `array.ctypes.data` in a third of its time."""
+    try:
+        return ctypes.addressof(_byte.from_buffer(array.data))
+    except (TypeError, ValueError):  # one that is empty, or may not be written
+        return array.ctypes.data

@@ -9,7 +9,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.library import library
+from sketch.library import address, library
 
 __all__ = ["Chain", "End", "LooseEnds"]
 
@@ -44,7 +44,7 @@ class LooseEnds:
         self._rivals = np.array([j for others in rivals for j in sorted(others)], dtype=np.int32)
         self._from = np.fromiter(accumulate(map(len, rivals), initial=0), dtype=np.int32)
         known = len(self._rivals) > 0
-        self.rivals = (self._rivals.ctypes.data, self._from.ctypes.data) if known else (None, None)
+        self.rivals = (address(self._rivals), address(self._from)) if known else (None, None)
         self._links = np.empty((MOST_STEPS, MOST_PARTS), dtype=np.int32)
         self._parts, self._asked = (
             np.empty(MOST_STEPS, dtype=np.int32),
@@ -52,7 +52,7 @@ class LooseEnds:
         )
         self._gaps, self._ink = np.empty(MOST_STEPS), np.empty(MOST_STEPS)
         out = (self._links, self._parts, self._gaps, self._ink, self._asked[1:], self._asked)
-        self._into = [array.ctypes.data for array in out]
+        self._into = [address(array) for array in out]
         self._of: list[int | None] = []
 
     def add(self, ends: Array, length: Array) -> None:
@@ -64,11 +64,11 @@ class LooseEnds:
         self._count = np.concatenate([self._count, np.full(new, UNKNOWN, dtype=np.int32)])
         self._near = np.concatenate([self._near, np.zeros((new, CHOICES), dtype=np.int32)])
         self._gap = np.concatenate([self._gap, np.zeros((new, CHOICES))])
-        given = [array.ctypes.data for array in (self.at, self.length, self.loose)]
+        given = [address(array) for array in (self.at, self.length, self.loose)]
         self._of = [
             *given,
             *self.rivals,
-            *(array.ctypes.data for array in (self._count, self._near, self._gap)),
+            *(address(array) for array in (self._count, self._near, self._gap)),
         ]
 
     def loosen(self, piece: int) -> set[End]:
