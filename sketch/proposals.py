@@ -2,7 +2,10 @@
 
 A piece proposes the groups in which it leads: outlines of which it is drawn first, an X likewise, arrows of
 which it is the shaft. Its proposals depend on the ink around it alone, and are made anew only where that ink
-has changed; fits of the same pieces are kept.
+has changed; the dear fits, of outlines and crosses, are kept.
+
+What cannot be in the answer is left out as early as that is known, and changes nothing: a reading that loses more
+than HOPELESS is not priced to its end.
 """
 
 from __future__ import annotations
