@@ -3,8 +3,10 @@
 
 #include "crowd_parts.h"
 
-static const double FRAME = 1.0 / 60;  /* [s]: contacts are found anew this often */
-static const int32_t SUBSTEPS = 4;     /* of a frame */
+static const double FRAME = 1.0 / 20;    /* [s]: contacts are found anew this often */
+static const double FAR = 0.25;          /* of a body's reach, in such a time */
+static const double MANY = 0.35;         /* of the bodies that move */
+static const double SUBSTEP = 1.0 / 240; /* [s] */
 static const int32_t PASSES = 6;       /* between looks for new contacts, at most */
 static const int32_t LOOKS = 6;        /* of a substep, at most */
 
@@ -18,7 +20,11 @@ Crowd *crowd_create(const World *world, Recorder *recorder) {
     crowd->active = calloc((size_t)world->body_count, sizeof *crowd->active);
     crowd->mover = calloc((size_t)world->body_count, sizeof *crowd->mover);
     crowd->pressed = calloc((size_t)world->body_count, sizeof *crowd->pressed);
-    bool made = crowd->mover && crowd->active && crowd->pressed && pivots_create(&crowd->pivots, world) == SIM_OK;
+    crowd->part = calloc((size_t)world->body_count, sizeof *crowd->part);
+    crowd->base = calloc((size_t)world->body_count, sizeof *crowd->base);
+    crowd->base_angle = calloc((size_t)world->body_count, sizeof *crowd->base_angle);
+    bool made = crowd->mover && crowd->active && crowd->pressed && crowd->part && crowd->base && crowd->base_angle &&
+                pivots_create(&crowd->pivots, world) == SIM_OK;
     if (!made || touch_create(crowd, world) != SIM_OK || rest_create(crowd, world) != SIM_OK) {
         crowd_destroy(crowd);
         return NULL;
@@ -33,6 +39,9 @@ void crowd_destroy(Crowd *crowd) {
     free(crowd->mover);
     free(crowd->active);
     free(crowd->pressed);
+    free(crowd->part);
+    free(crowd->base);
+    free(crowd->base_angle);
     pivots_destroy(&crowd->pivots);
     free(crowd);
 }
@@ -101,45 +110,96 @@ static void store(Crowd *crowd, World *world) {
     for (int32_t k = 0; k < crowd->active_count; k++) {
         const Mover *m = &crowd->mover[crowd->active[k]];
         Body *body = &world->body[crowd->active[k]];
-        body->position = vadd(body->position, m->moved);
-        body->angle += m->turned;
+        body->position = crowd_position(crowd, crowd->active[k]);
+        body->angle = crowd_angle(crowd, crowd->active[k]);
         body->velocity = m->velocity;
         body->spin = m->spin;
     }
 }
 
-/* From `end` - dt on. */
-static int frame(Crowd *crowd, World *world, double dt, double end) {
-    int32_t substeps = (int32_t)ceil(SUBSTEPS * dt / FRAME - 1e-9);
-    if (substeps < 1) substeps = 1;
-    double h = dt / substeps;
-    double scale = crowd->substep > 0 ? h / crowd->substep : 0;
+static Part part_of(const World *world, int32_t body) {
+    Mode mode = world->body[body].mode;
+    return mode == MODE_CROWD ? PART_MOVES : mode == MODE_FLIGHT || mode == MODE_SMOOTH ? PART_NONE : PART_STANDS;
+}
+
+/* How many steps of dt the next frame is to have: while many bodies go far, contacts come and go, and few are worth keeping. */
+static int32_t steps_ahead(const World *world, double dt) {
+    int32_t moving = 0, far = 0;
+    for (int32_t i = 1; i < world->body_count; i++) {
+        const Body *b = &world->body[i];
+        if (b->mode != MODE_CROWD) continue;
+        double speed = vlength(b->velocity) + b->reach * fabs(b->spin);
+        moving++;
+        far += speed * FRAME > FAR * b->reach;
+    }
+    return far > MANY * moving ? 1 : (int32_t)larger(1, floor(FRAME / dt + 1e-6));
+}
+
+/* A frame of so long, with substeps of h. */
+static int begin(Crowd *crowd, World *world, double length, double h) {
+    memory_scale(&crowd->memory, crowd->substep > 0 ? h / crowd->substep : 0);
     crowd->substep = h;
-    memory_scale(&crowd->memory, scale);
-    int status = touch_frame(crowd, world, dt, h);
-    if (status != SIM_OK) return status;
-    status = pivots_load(&crowd->pivots, world, crowd->mover);
+    int status = touch_frame(crowd, world, length, h);
+    if (status == SIM_OK) status = pivots_load(&crowd->pivots, world, crowd->mover);
     if (status != SIM_OK) return status;
     pivots_factor(&crowd->pivots, crowd->mover);
     gap_limit(crowd->rows.contact, crowd->rows.count, crowd->mover, h);
-    for (int32_t k = 0; k < substeps && status == SIM_OK; k++) {
-        crowd->time = k + 1 < substeps ? end - (substeps - 1 - k) * h : end;
-        status = substep(crowd, world, dt - k * h, h);
+    for (int32_t i = 0; i < world->body_count; i++) crowd->part[i] = part_of(world, i);
+    crowd->length = crowd->left = length;
+    crowd->open = true;
+    return SIM_OK;
+}
+
+/* Whether the frame goes on for another dt in substeps of h: it has as long to go, and nothing else has changed a body. */
+static bool goes_on(const Crowd *crowd, const World *world, double dt, double h) {
+    if (!crowd->open || crowd->left < dt * (1 - 1e-6) || fabs(h - crowd->substep) > 1e-6 * h) return false;
+    for (int32_t i = 0; i < world->body_count; i++) {
+        const Body *b = &world->body[i];
+        if (part_of(world, i) != crowd->part[i]) return false;
+        if (crowd->part[i] != PART_MOVES) continue;
+        Vec at = crowd_position(crowd, i), v = crowd->mover[i].velocity;
+        if (b->position.x != at.x || b->position.y != at.y || b->velocity.x != v.x || b->velocity.y != v.y)
+            return false;
+        if (b->angle != crowd_angle(crowd, i) || b->spin != crowd->mover[i].spin) return false;
     }
-    if (status != SIM_OK) return status;
-    status = touch_finish(crowd, world, dt);
-    if (status != SIM_OK) return status;
-    store(crowd, world);
-    status = events_tell_contacts(crowd, world);
-    if (status == SIM_OK) status = rest_update(crowd, world, dt);
-    if (status != SIM_OK) return status;
-    rest_wake_nudged(crowd, world);
-    return memory_store(&crowd->memory, crowd->rows.contact, crowd->rows.count, crowd->mover);
+    return true;
 }
 
 static void release(Crowd *crowd, World *world) {
     for (int32_t i = 0; i < world->body_count; i++)
         if (crowd_moves(world, i) && !crowd->touched[i]) world->body[i].mode = MODE_FLIGHT;
+}
+
+/* The frame is over: what touches, and, if nothing broke it off, what rests and what flies on. */
+static int finish(Crowd *crowd, World *world, bool whole) {
+    crowd->open = false;
+    int status = touch_finish(crowd, crowd->length);
+    if (status == SIM_OK && whole) status = rest_update(crowd, world, crowd->length);
+    if (status != SIM_OK) return status;
+    if (whole) rest_wake_nudged(crowd, world);
+    status = memory_store(&crowd->memory, crowd->rows.contact, crowd->rows.count, crowd->mover);
+    if (whole) release(crowd, world);
+    return status;
+}
+
+/* From `end` - dt on. */
+static int step(Crowd *crowd, World *world, double dt, double end) {
+    int32_t substeps = (int32_t)ceil(dt / SUBSTEP - 1e-6);
+    if (substeps < 1) substeps = 1;
+    double h = dt / substeps;
+    int status = SIM_OK;
+    if (crowd->open && !goes_on(crowd, world, dt, h)) status = finish(crowd, world, false);
+    if (status == SIM_OK && !crowd->open) status = begin(crowd, world, steps_ahead(world, dt) * dt, h);
+    for (int32_t k = 0; k < substeps && status == SIM_OK; k++) {
+        crowd->time = k + 1 < substeps ? end - (substeps - 1 - k) * h : end;
+        status = substep(crowd, world, crowd->left - k * h, h);
+    }
+    if (status != SIM_OK) return status;
+    store(crowd, world);
+    status = events_tell_contacts(crowd, world);
+    if (status != SIM_OK) return status;
+    crowd->left -= dt;
+    return crowd->left < dt * (1 - 1e-6) ? finish(crowd, world, true) : SIM_OK;
 }
 
 int crowd_step(Crowd *crowd, World *world, double from, double to, double tolerance) {
@@ -148,12 +208,10 @@ int crowd_step(Crowd *crowd, World *world, double from, double to, double tolera
     for (int32_t i = 0; i < world->body_count && !any; i++) any = crowd_moves(world, i);
     if (!any) return SIM_OK;
     crowd->tolerance = tolerance;
-    int32_t frames = (int32_t)ceil(dt / FRAME - 1e-6);
-    if (frames < 1) frames = 1;
-    for (int32_t k = 0; k < frames; k++) {
-        int status = frame(crowd, world, dt / frames, k + 1 < frames ? from + (k + 1) * (dt / frames) : to);
-        if (status != SIM_OK) return status;
-    }
-    release(crowd, world);
-    return SIM_OK;
+    int32_t parts = (int32_t)ceil(dt / FRAME - 1e-6);
+    if (parts < 1) parts = 1;
+    int status = SIM_OK;
+    for (int32_t k = 0; k < parts && status == SIM_OK; k++)
+        status = step(crowd, world, dt / parts, k + 1 < parts ? from + (k + 1) * (dt / parts) : to);
+    return status;
 }

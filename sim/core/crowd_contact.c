@@ -31,7 +31,7 @@ static void fill_friction(Contact *c, Vec ra, Vec rb) {
 /* The points of a contact from its manifold, with the impulses that the same points had in `old`. */
 void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Manifold *m, const Record *old) {
     const Mover *a = &crowd->mover[c->a], *b = &crowd->mover[c->b];
-    Vec at_a = vadd(world->body[c->a].position, a->moved), at_b = vadd(world->body[c->b].position, b->moved);
+    Vec at_a = crowd_position(crowd, c->a), at_b = crowd_position(crowd, c->b);
     double radius_a = world->piece[c->key >> 32].radius, radius_b = world->piece[c->key & 0xffffffffu].radius;
     Two none = {0, 0}, found = none;
     c->count = m->count;

@@ -7,8 +7,8 @@ static int32_t piece_a(uint64_t key) { return (int32_t)(key >> 32); }
 static int32_t piece_b(uint64_t key) { return (int32_t)(key & 0xffffffffu); }
 
 /* Where a contact acts: its arm from a's centre by its levers, between its points or at one of them. */
-static Vec contact_point_at(const Crowd *crowd, const World *world, const Contact *c, double lever) {
-    Vec centre = vadd(world->body[c->a].position, crowd->mover[c->a].moved);
+static Vec contact_point_at(const Crowd *crowd, const Contact *c, double lever) {
+    Vec centre = crowd_position(crowd, c->a);
     return vmad(vmad(centre, c->spin_ta, c->normal), -lever, vperp(c->normal));
 }
 
@@ -35,7 +35,7 @@ int events_tell_impacts(Crowd *crowd, const World *world) {
         }
         if (sum == 0) continue;
         Vec impulse = vmad(vscale(c->normal, sum), c->impulse_t, vperp(c->normal));
-        int status = tell(crowd, world, SIM_IMPACT, c->key, contact_point_at(crowd, world, c, levers / sum), impulse);
+        int status = tell(crowd, world, SIM_IMPACT, c->key, contact_point_at(crowd, c, levers / sum), impulse);
         if (status != SIM_OK) return status;
     }
     return SIM_OK;
@@ -71,7 +71,7 @@ static int tell_end(Crowd *crowd, const World *world, uint64_t key) {
     if (others_touch(crowd, world, key)) return SIM_OK;
     int32_t a = world->shape[world->piece[piece_a(key)].shape].body;
     int32_t b = world->shape[world->piece[piece_b(key)].shape].body, of = a != 0 ? a : b;
-    Vec at = vadd(world->body[of].position, crowd->mover[of].moved);
+    Vec at = crowd_position(crowd, of);
     return tell(crowd, world, SIM_CONTACT_ENDED, key, at, vec(0, 0));
 }
 
@@ -83,7 +83,7 @@ int events_tell_contacts(Crowd *crowd, const World *world) {
         bool now = touches(crowd, c);
         if (now && !c->touching) {
             double lever = c->count > 1 ? 0.5 * (c->spin_na[0] + c->spin_na[1]) : c->spin_na[0];
-            status = tell(crowd, world, SIM_CONTACT_BEGUN, c->key, contact_point_at(crowd, world, c, lever), vec(0, 0));
+            status = tell(crowd, world, SIM_CONTACT_BEGUN, c->key, contact_point_at(crowd, c, lever), vec(0, 0));
         } else if (!now && c->touching) {
             status = tell_end(crowd, world, c->key);
         }

@@ -22,7 +22,6 @@ void memory_destroy(Memory *memory) {
 }
 
 static int memory_room(Memory *memory, int32_t count) {
-    if (index_room(&memory->index, count) != SIM_OK) return SIM_OUT_OF_MEMORY;
     if (count <= memory->capacity) return SIM_OK;
     int32_t capacity = 2 * count + 64;
     Record *record = realloc(memory->record, (size_t)capacity * sizeof *record);
@@ -50,6 +49,7 @@ int memory_store(Memory *memory, const Contact *contact, int32_t count, const Mo
     memory->record = memory->spare;
     memory->spare = swap;
     memory->count = kept;
+    if (index_room(&memory->index, kept) != SIM_OK) return SIM_OUT_OF_MEMORY;
     index_clear(&memory->index);
     for (int32_t i = 0; i < kept; i++) index_add(&memory->index, memory->record[i].key, i);
     return SIM_OK;

@@ -28,10 +28,18 @@ typedef struct Range {
     double room; /* beyond that, and for turning */
 } Range;
 
+/* What a body is to a frame. */
+typedef enum Part { PART_NONE, PART_STANDS, PART_MOVES } Part;
+
 struct Crowd {
     Recorder *recorder; /* or NULL */
     double tolerance;
     double time; /* when the substep ends */
+    bool open; /* a frame goes on */
+    double length, left; /* of it, and how long it has to go yet [s] */
+    Part *part; /* by body, when it began */
+    Vec *base; /* by body: where it was then */
+    double *base_angle;
     double substep; /* the last one's length: impulses are of that long */
     int32_t body_count, shape_count, piece_count;
     Mover *mover; /* by body */
@@ -75,6 +83,14 @@ struct Crowd {
 
 /* An array of so many, and one more, zeroed. */
 static inline void *table(size_t count, size_t size) { return calloc(count + 1, size); }
+
+/* Where a body is in the frame. */
+static inline Vec crowd_position(const Crowd *crowd, int32_t body) {
+    return vadd(crowd->base[body], crowd->mover[body].moved);
+}
+static inline double crowd_angle(const Crowd *crowd, int32_t body) {
+    return crowd->base_angle[body] + crowd->mover[body].turned;
+}
 
 static inline bool crowd_moves(const World *world, int32_t body) { return world->body[body].mode == MODE_CROWD; }
 
@@ -144,7 +160,7 @@ void touch_destroy(Crowd *crowd);
 int touch_frame(Crowd *crowd, World *world, double dt, double substep);
 void touch_refresh(Crowd *crowd, World *world, double left);
 int touch_near(Crowd *crowd, World *world, double left, double substep, double threshold, bool *found);
-int touch_finish(Crowd *crowd, const World *world, double dt);
+int touch_finish(Crowd *crowd, double dt);
 
 /* crowd_events.c */
 bool events_touching(const Crowd *crowd, const World *world, const Contact *contact);

@@ -46,10 +46,8 @@ void range_destroy(Crowd *crowd) {
 
 /* Bring a body's outlines to where it is now. */
 void range_place(Crowd *crowd, const World *world, int32_t body) {
-    const Body *b = &world->body[body];
-    const Mover *m = &crowd->mover[body];
-    if (m->inverse_mass > 0)
-        posed_place(&crowd->posed, world, body, pose(vadd(b->position, m->moved), b->angle + m->turned));
+    if (crowd->mover[body].inverse_mass > 0)
+        posed_place(&crowd->posed, world, body, pose(crowd_position(crowd, body), crowd_angle(crowd, body)));
     crowd->placed[body] = crowd->moment;
 }
 
@@ -111,9 +109,8 @@ void range_start(Crowd *crowd, const World *world, int32_t body, double dt) {
         look_ahead(crowd, world, body, dt);
     }
     if (!known) {
-        const Mover *m = &crowd->mover[body];
-        *start = pose(vadd(b->position, m->moved), b->angle + m->turned);
-        crowd->start_angle[body] = b->angle + m->turned;
+        *start = pose(crowd_position(crowd, body), crowd_angle(crowd, body));
+        crowd->start_angle[body] = crowd_angle(crowd, body);
         posed_place(&crowd->posed, world, body, *start);
         for (int32_t s = b->first_shape; s < b->first_shape + b->shape_count; s++) {
             const Shape *shape = &world->shape[s];

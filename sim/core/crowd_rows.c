@@ -4,8 +4,8 @@
  * friction: Coulomb's cone).  Contacts are rigid: soft ones sag under a pile by its load over their stiffness.  Overlap is
  * taken out of the positions themselves (crowd_gap.c), never by velocities: a jam gains no energy from it.
  *
- * What a contact does next cannot be foretold: it presses or not, slides or not, matters or not.  A processor that guesses
- * loses more time than a row takes, so rows choose by arithmetic, and lists of what is to be solved are made beforehand.
+ * What a contact does next cannot be foretold: it presses or not, slides or not.  A processor that guesses loses more time
+ * than a row takes, so rows choose by arithmetic.
  */
 #include "crowd_rows.h"
 
@@ -16,8 +16,9 @@
 #include "sim.h"
 
 int rows_create(Rows *rows, int32_t mover_count) {
-    *rows = (Rows){.mover_count = mover_count, .hot = calloc(2 * (size_t)mover_count, sizeof *rows->hot)};
+    *rows = (Rows){.mover_count = mover_count, .hot = calloc(3 * (size_t)mover_count, sizeof *rows->hot)};
     rows->whirls = rows->hot ? rows->hot + mover_count : NULL;
+    rows->was = rows->hot ? rows->hot + 2 * mover_count : NULL;
     return rows->hot ? SIM_OK : SIM_OUT_OF_MEMORY;
 }
 
@@ -31,10 +32,10 @@ int rows_room(Rows *rows, int32_t count) {
     if (ends) rows->ends = ends;
     Bounce *bounce = realloc(rows->bounce, n * sizeof *bounce);
     if (bounce) rows->bounce = bounce;
-    int32_t *list = realloc(rows->list, 4 * n * sizeof *list);
+    int32_t *list = realloc(rows->list, 2 * n * sizeof *list);
     if (list) rows->list = list;
     if (!contact || !ends || !bounce || !list) return SIM_OUT_OF_MEMORY;
-    rows->one = list + n, rows->other = list + 2 * n, rows->stale = list + 3 * n;
+    rows->stale = list + n;
     rows->stale_count = 0;
     rows->capacity = capacity;
     return SIM_OK;
@@ -203,17 +204,6 @@ static double solve_in_turn(Contact *c, Meeting *m) {
     return larger(first, second);
 }
 
-/* The contacts of hot bodies. Returns how many there are in rows->list. */
-static int32_t list_hot(Rows *rows) {
-    int32_t count = 0;
-    for (int32_t i = 0; i < rows->count; i++) {
-        const Ends *ends = &rows->ends[i];
-        rows->list[count] = i;
-        count += rows->hot[ends->a] | rows->hot[ends->b];
-    }
-    return count;
-}
-
 static inline bool leave_noticed(Rows *rows, const Contact *c, const Meeting *m, Mover *mover, double change,
                                  double dt) {
     bool noticed = change * dt > c->fine;
@@ -224,25 +214,19 @@ static inline bool leave_noticed(Rows *rows, const Contact *c, const Meeting *m,
 }
 
 bool rows_solve(Rows *rows, Mover *mover, double dt, bool all) {
-    int32_t listed = all ? rows->count : list_hot(rows), ones = 0, others = 0;
-    bool heated = false;
-    memset(rows->hot, 0, (size_t)rows->mover_count * sizeof *rows->hot);
-    for (int32_t k = 0; k < listed; k++) {
-        int32_t i = all ? k : rows->list[k], kind = rows->ends[i].kind;
-        rows->one[ones] = rows->other[others] = i;
-        ones += kind == KIND_ONE;
-        others += kind > KIND_ONE;
-    }
-    for (int32_t k = 0; k < ones; k++) {
-        Contact *c = &rows->contact[rows->one[k]];
+    bool *was = rows->was, *hot = rows->hot, heated = false;
+    memcpy(was, hot, (size_t)rows->mover_count * sizeof *was);
+    memset(hot, 0, (size_t)rows->mover_count * sizeof *hot);
+    for (int32_t i = 0; i < rows->count; i++) {
+        const Ends *ends = &rows->ends[i];
+        /* what this pass heats counts at once: a blow goes on through a row of bodies in one pass */
+        if (!(all | was[ends->a] | was[ends->b] | hot[ends->a] | hot[ends->b])) continue;
+        if (ends->kind == KIND_OPEN) continue;
+        Contact *c = &rows->contact[i];
         Meeting m = meet(&mover[c->a], &mover[c->b]);
-        double change = solve_one(c, &m);
-        heated |= leave_noticed(rows, c, &m, mover, change, dt);
-    }
-    for (int32_t k = 0; k < others; k++) {
-        Contact *c = &rows->contact[rows->other[k]];
-        Meeting m = meet(&mover[c->a], &mover[c->b]);
-        double change = c->pair_mass > 0 ? solve_pair(c, &m) : solve_in_turn(c, &m);
+        double change = ends->kind == KIND_ONE    ? solve_one(c, &m)
+                        : ends->kind == KIND_PAIR ? solve_pair(c, &m)
+                                                  : solve_in_turn(c, &m);
         heated |= leave_noticed(rows, c, &m, mover, change, dt);
     }
     return heated;

@@ -81,10 +81,10 @@ typedef struct Rows {
     Contact *contact;
     Ends *ends; /* of each contact */
     int32_t count, capacity;
-    bool *hot; /* by mover: something changed it noticeably since the last pass made its list */
+    bool *hot, *was; /* by mover: something changed it noticeably in this pass or since the last, and before */
     bool *whirls; /* by mover: it turns fast; of what does not take part in the frame it is false */
     int32_t mover_count;
-    int32_t *list, *one, *other; /* contacts to be solved in a pass: all, those of one point, the rest */
+    int32_t *list; /* of contacts, to be gone through */
     int32_t *stale; /* contacts whose bodies have turned or shifted a good deal since their points were found */
     int32_t stale_count;
     Bounce *bounce;

@@ -123,6 +123,8 @@ static void load(Crowd *crowd, const World *world) {
         const Body *body = &world->body[i];
         Mover *m = &crowd->mover[i];
         crowd->rows.whirls[i] = false;
+        crowd->base[i] = body->position;
+        crowd->base_angle[i] = body->angle;
         *m = (Mover){0};
         if (body->mode != MODE_CROWD) continue;
         crowd->active[crowd->active_count++] = i;
@@ -286,7 +288,7 @@ static void find_touched(Crowd *crowd, double dt) {
 }
 
 /* At the end of a frame: who touches, and what is known of the gaps, for the next one. */
-int touch_finish(Crowd *crowd, const World *world, double dt) {
+int touch_finish(Crowd *crowd, double dt) {
     find_touched(crowd, dt);
     if (index_room(&crowd->last_index, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     index_clear(&crowd->last_index);
@@ -295,11 +297,9 @@ int touch_finish(Crowd *crowd, const World *world, double dt) {
         near->gap = near_gap(crowd, near);
         index_add(&crowd->last_index, pair_key(near->piece_a, near->piece_b), i);
     }
-    for (int32_t i = 0; i < world->body_count; i++) {
-        const Body *b = &world->body[i];
-        const Mover *m = &crowd->mover[i];
-        crowd->end[i] = vadd(b->position, m->moved);
-        crowd->end_angle[i] = b->angle + m->turned;
+    for (int32_t i = 0; i < crowd->body_count; i++) {
+        crowd->end[i] = crowd_position(crowd, i);
+        crowd->end_angle[i] = crowd_angle(crowd, i);
     }
     Near *swap = crowd->last_near;
     crowd->last_near = crowd->near;

@@ -99,6 +99,9 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     if (to <= from) return;
     if (a != 0 && b != 0) { /* most pairs are too far apart to need a closer look */
         double reach = e->world->body[a].reach + e->world->body[b].reach + e->slack.gap;
+        double ways = motion_way(&ta->motion, from, to) + motion_way(&tb->motion, from, to);
+        Vec apart = vsub(motion_position(&ta->motion, from), motion_position(&tb->motion, from));
+        if (vdot(apart, apart) > (reach + ways) * (reach + ways)) return;
         e->spent += GLANCE;
         if (motion_nearest(&ta->motion, &tb->motion, from, to) > reach) return;
     }

@@ -58,6 +58,14 @@ Vec motion_position(const Motion *m, double time) {
     return vec(horner(m->q[0], m->degree, x), horner(m->q[1], m->degree, x));
 }
 
+double motion_way(const Motion *m, double from, double to) {
+    if (m->degree == 0) return 0;
+    if (m->degree > 2) return m->speed * (to - from);
+    double x = (from - m->start) / m->span;
+    Vec v = vec(m->v[0][0] + m->v[0][1] * x, m->v[1][0] + m->v[1][1] * x), a = vec(m->v[0][1], m->v[1][1]);
+    return vlength(vmad(v, (to - from) / 2, a)) * (to - from) + vlength(a) * (to - from) * (to - from) / 8;
+}
+
 /* Where a body is, for a bound: a point that it strays from by `stray` at most; a flight's is on its chord. */
 static Vec position_about(const Motion *m, double from, double at, double *stray) {
     if (m->degree <= 2) return motion_position(m, at);

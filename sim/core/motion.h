@@ -44,6 +44,9 @@ State motion_state(const Motion *motion, double time);
 State motion_acceleration(const Motion *motion, double time); /* in v and spin */
 Vec motion_position(const Motion *motion, double time);
 
+/* How far the body goes at most from one time to another [m]. */
+double motion_way(const Motion *motion, double from, double to);
+
 /* No less than so near do two bodies' centres come from one time to another [m]; two that fall alike go straight past each
  * other. */
 double motion_nearest(const Motion *m, const Motion *n, double from, double to);

@@ -25,8 +25,8 @@ void index_destroy(Index *index) {
 
 int index_room(Index *index, int32_t count) {
     if (2 * count < index->slots) return SIM_OK;
-    int32_t slots = 256;
-    while (slots < 4 * count) slots *= 2;
+    int32_t slots = 256; /* no more than are needed: to clear them costs the cache's contents */
+    while (slots <= 2 * count) slots *= 2;
     uint64_t *key = calloc((size_t)slots, sizeof *key);
     int32_t *value = malloc((size_t)slots * sizeof *value);
     if (!key || !value) {
