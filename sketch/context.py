@@ -92,6 +92,7 @@ def _told(proposed: Proposed, rows: list[Row], bodies: _Bodies, size: float) -> 
             gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY * (1 + large)
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
+            gains[k] -= SLIP * bodies.slip(c, extent)
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * size or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)

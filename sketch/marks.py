@@ -94,7 +94,7 @@ def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fi
     count = sum(p.observations for p in parts)
     best = None
     single = len(parts) == 1
-    for bends in ((3,), (4,), (5,)) if single == 1 else ((1, 1), (1, 2), (2, 1), (1, 3), (3, 1), (2, 2)):
+    for bends in ((3,), (4,), (5,)) if single else ((1, 1), (1, 2), (2, 1), (1, 3), (3, 1), (2, 2)):
         off = sum(misfit_of(p, p.residual[n]) for p, n in zip(parts, bends, strict=True))
         if 6 * PARAMETER + off > most and not single:
             continue

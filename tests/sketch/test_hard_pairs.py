@@ -196,3 +196,32 @@ def test_a_wavy_line_by_itself_is_left_out() -> None:
     found = read(line(WAVES, HANDS["neat"], np.random.default_rng(0)))
     assert kinds(found) == ["unread"]
     assert "left out" in found.scene.notes[-1]
+
+
+def test_what_joins_the_bars_of_an_x_may_go_any_way() -> None:
+    """Down one bar, on in a hook and a bow to the head of the other, and down that: in one stroke."""
+    hook = [(38, 33), (47, 37), (44, 33), (35, 24), (31, 14), (32, 3)]
+    course = np.array([(0, 0), (12, 14), (24, 28), *hook, (38, -15), (28, 0), (14, 21), (0, 40)], float)
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        body = outline(box(400, 300, 460, 240), HANDS["neat"], rng)
+        mark = line((1.5 * (course - [20, 12]) + [400, 300]).tolist(), HANDS["neat"], rng)
+        assert kinds(read(body, mark)) == ["4-gon", "anchor"]
+
+
+def test_a_rod_is_straight() -> None:
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        assert kinds(read(line([(200, 200), (420, 330)], HANDS["quick"], rng))) == ["bar"]
+        t = np.linspace(0, 1, 40)
+        arc = np.stack([200 + 220 * t, 300 + 88 * t * (1 - t)], axis=1)
+        (bent,) = read(line(arc.tolist(), HANDS["neat"], rng)).readings
+        assert len(bent.outline) > 2
+
+
+def test_a_scrawl_at_a_corner_is_no_gravity() -> None:
+    rng = np.random.default_rng(5)
+    body = outline(box(400, 300, 400, 240), HANDS["neat"], rng)
+    small = arrow((585, 405), (600, 418), HANDS["neat"], rng)
+    assert read(body, small).scene.gravity == (0.0, 0.0)
+    assert read(body, arrow((100, 100), (104, 220), HANDS["neat"], rng)).scene.gravity != (0.0, 0.0)
