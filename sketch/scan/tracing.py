@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import thin, trace
 from sketch.scan.corners import begin_at_corner, sharpen_corners
-from sketch.scan.graph import build_graph
+from sketch.scan.graph import Graph, build_graph
+from sketch.scan.overlaps import overlapping
 from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
 from sketch.scan.ridge import centre_on_ink
 from sketch.scan.rings import find_rings, take_rings
@@ -121,6 +122,7 @@ def _strokes(seen: Traced) -> list[Points]:
     graph = build_graph(trace(skeleton, size), distance, pen)
     centre_on_ink(graph, page.darkness, pen)
     sharpen_corners(graph, distance, pen)
+    drawn = Graph(graph.nodes, graph.radius, list(graph.edges))
     found, names = find_rings(mask, distance, pen), count()
     _, rings = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
     whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen, names)
@@ -134,6 +136,7 @@ def _strokes(seen: Traced) -> list[Points]:
         more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
         others += [_drawn(way, seen) for way in more]
     others += with_tails(likeliest + others, pen * seen.scale)
+    others += [_drawn(way, seen) for way in overlapping(drawn, found, graph.edges, pen)]
     if others:
         height, width = mask.shape
         chosen = settle(likeliest, others, pen * seen.scale, width * seen.scale, height * seen.scale)
