@@ -25,7 +25,7 @@ Points = NDArray[np.float64]
 Rotation = dict[int, list[End]]
 
 MOST_EDGES = 24  # of a face that is looked at
-MOST_FACES = 40  # of a page: more are a net, or shading
+MOST_FACES = 80  # of a page, outsides and gaps among them: more are a net, or shading
 SMALLEST = 4.0  # pen widths: a face whose area is no square of that is a gap between lines
 
 
@@ -46,7 +46,7 @@ def faces(junctions: list[Junction], layout: Layout) -> list[Face]:
     """The faces that share an edge with another one; none of a page that has very many."""
     rotation = _rotation(junctions, layout)
     after = {end: following for ends in rotation.values() for end, following in pairwise([*ends, ends[0]])}
-    out, seen = [], set[End]()
+    trails, seen = [], set[End]()
     for first in after:
         if first in seen:
             continue
@@ -58,15 +58,15 @@ def faces(junctions: list[Junction], layout: Layout) -> list[Face]:
                 break
             trail.append(at)
         if len(trail) <= MOST_EDGES:
-            face = _face(trail, layout)
-            if face is not None:
-                out.append(face)
+            trails.append(trail)
+    if len(trails) > MOST_FACES:
+        return []
+    out = [face for face in (_face(trail, layout) for trail in trails) if face is not None]
     owners: dict[int, int] = {}
     for face in out:
         for e in face.edges:
             owners[e] = owners.get(e, 0) + 1
-    out = [face for face in out if any(owners[e] > 1 for e in face.edges)]
-    return out if len(out) <= MOST_FACES else []
+    return [face for face in out if any(owners[e] > 1 for e in face.edges)]
 
 
 def shared_sides(found: list[Face], k: int) -> list[frozenset[int]]:

@@ -7,8 +7,10 @@ junction with the branches at both its ends.
 
 from __future__ import annotations
 
+from cmath import phase
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -47,6 +49,16 @@ class Branch:
     outward: Points
     bend: float
     centre: Points
+
+    @cached_property
+    def place(self) -> complex:
+        """`start` as a number."""
+        return complex(*self.start.tolist())
+
+    @cached_property
+    def direction(self) -> complex:
+        """`outward` as a number."""
+        return complex(*self.outward.tolist())
 
 
 @dataclass(eq=False)
@@ -151,18 +163,15 @@ def turn_cost(a: Branch, b: Branch) -> float:
     It is the angle by which the pen turns, at once and on its way across the gap, and that by which one of
     them bends otherwise than the other: a wheel that touches a plank goes on as round as it was.
     """
-    turn = _angle(-a.outward, b.outward)
-    gap = b.start - a.start
+    u, v = a.direction, b.direction
+    turn = phase(-v / u)
+    gap = b.place - a.place
     # seen from a junction, both halves of an arc bend opposite ways; what bends a lot bends as it likes
     uneven = UNEVEN * min(abs(a.bend + b.bend), ROUND_BEND) ** 2
-    if np.hypot(*gap) < 1e-9:
+    if abs(gap) < 1e-9:
         return turn * turn + uneven
-    detour = _angle(-a.outward, gap) + _angle(gap, b.outward)
+    detour = abs(phase(-gap / u)) + abs(phase(v / gap))
     return 0.5 * (turn * turn + detour * detour) + uneven
-
-
-def _angle(u: Points, v: Points) -> float:
-    return float(abs(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v)))
 
 
 def _pair(branches: list[Branch]) -> tuple[float, list[tuple[int, int]]]:

@@ -16,6 +16,7 @@ Points = NDArray[np.float64]
 
 TAIL = 0.25  # of an outline's length: a longer line is none's tail
 OPEN = 0.6  # of its own length: nearer ends are a loop's
+ENDS = 1.5  # [rad²] of strain: more than that of one end at a junction, less than that of two
 BESIDE = 1.0  # pen widths: where a tail leaves its outline
 
 
@@ -25,7 +26,9 @@ def with_tails(ways: list[Way], pen: float) -> list[Way]:
     pen: its width, in the pixels of the ways.
     """
     closed = [(way, _length(way.points)) for way in ways if np.array_equal(way.points[0], way.points[-1])]
-    lines = [(way, _length(way.points)) for way in ways if not np.array_equal(way.points[0], way.points[-1])]
+    # of a tail one end is at a junction, the other free
+    loose = [way for way in ways if way.strain < ENDS and not np.array_equal(way.points[0], way.points[-1])]
+    lines = [(way, _length(way.points)) for way in loose]
     out = []
     for tail, short in lines:
         for outline, around in closed:

@@ -129,6 +129,8 @@ def _strokes(seen: Traced) -> list[Points]:
     rings += doubtful
     ways = Ways(graph, pen)
     likeliest = [_drawn(way, seen) for way in ways.likeliest()] + [_drawn(ring, seen) for ring in rings]
+    if ways.is_net:
+        return [way.points for way in likeliest if len(way.points) > 1]
     others = [_drawn(way, seen) for way in ways.others()]
     if whole is not None:
         tangled = Ways(whole, pen)

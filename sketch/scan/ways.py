@@ -8,7 +8,7 @@ strokes would make can tell; so the strokes of the next best pairings are given 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ Points = NDArray[np.float64]
 DOUBT = 3.0  # [rad²] that pairings may be worse in all than the best ones, and still be looked at
 SIDE = 3.0  # pen widths: the shortest side that is borrowed from other ink
 TOGETHER = 2  # junctions that are paired otherwise at once
+NET = 400  # edges: more than drawings of things have
 MOST = 30  # combinations of pairings that are looked at
 
 
@@ -52,6 +53,7 @@ class Ways:
     def __init__(self, graph: Graph, pen: float) -> None:
         self._junctions = junctions = find_junctions(graph, pen)
         self._graph = graph
+        self.is_net = len(graph.edges) > NET  # shading, too: no way through it is better than another
         self._inner = {e for junction in junctions for e in junction.bridges}
         smoothest = [(junction, junction.pairs) for junction in junctions]
         self._choices = close_outlines(graph, junctions, pen)
@@ -90,7 +92,7 @@ class Ways:
             for c in known
             if not c.closed and self._layout.length(c) > long and max(self._layout.ends(c)) >= 0
         ]
-        for first, second in list(combinations(sides, 2))[:MOST]:
+        for first, second in islice(combinations(sides, 2), MOST):
             for course in self._layout.joined(first, second):
                 out += [self._way(course, self._links), *self._closed(course, self._links)]
         for course in follow(self._graph, self._smoothest, self._inner):
@@ -153,7 +155,8 @@ def _signature(course: Course) -> tuple[frozenset[int], frozenset[frozenset[tupl
 
 def _combined(choices: list[Choice]) -> list[tuple[Choice, ...]]:
     """Sets of choices at different junctions, the likeliest first."""
-    likely = sorted((c for c in choices if c.extra < DOUBT), key=lambda c: c.extra)
+    # what is not among the MOST likeliest by itself is in none of the MOST likeliest sets
+    likely = sorted((c for c in choices if c.extra < DOUBT), key=lambda c: c.extra)[:MOST]
     sets = [
         some
         for size in range(1, TOGETHER + 1)
