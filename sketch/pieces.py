@@ -35,12 +35,10 @@ class Piece:
         box: least x, least y, greatest x, greatest y [pixels].
         length: along the stroke [pixels].
         gap: distance between its ends [pixels].
-        extent: three times the root mean square distance from its centroid [pixels]: a size that no turn
-        changes. scale: what its writer's precision goes with [pixels]: half of its extent; of a piece that
-        closes, half of
+        extent: three times the root mean square distance from its centroid [pixels]: a size that no turn changes.
+        scale: what its writer's precision goes with [pixels]: half of its extent; of a piece that closes, half of
             its thickness.
-        observations: how many independent observations its ink is worth: neighbouring points err together,
-        over
+        observations: how many independent observations its ink is worth: neighbouring points err together, over
             a distance that goes with the size of what is drawn.
         residual: mean squared distance from its best polyline of k segments [pixels²], k from 1.
         vertices: of those polylines: vertices[k][:k + 1].
