@@ -83,8 +83,7 @@ def _strokes(numbers: Iterable[int]) -> str:
 
 
 def _view(sketch: Sketch, scale: float | None) -> tuple[View, float]:
-    """The view, and the longer side of the page [pixels]: of the ink and a margin where no canvas is
-    given."""
+    """The view, and the longer side of the page [pixels]: of the ink and a margin where no canvas is given."""
     longer = max(sketch.width or 0.0, sketch.height or 0.0)
     if longer == 0:
         ink = np.concatenate([np.empty((0, 2)), *(s.points for s in sketch.strokes)])
@@ -189,8 +188,7 @@ def _either(circle: Drawn, taken: str, other: str) -> str:
 
 
 def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
-    """Fix the body that an X lies over: of several the one drawn last, of none the one that its bars
-    reach."""
+    """Fix the body that an X lies over: of several the one drawn last, of none the one that its bars reach."""
     at = reading.outline.mean(axis=0)
     reach = float(np.hypot(*np.ptp(reading.outline, axis=0))) / 2
     near = [(d.depth(at), d) for d in bodies.near(at, reach) if d.reading.solid]

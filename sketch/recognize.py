@@ -246,8 +246,7 @@ def _readings(
     number: dict[int, int],
     places: dict[Fitted, Placed],
 ) -> list[Reading]:
-    """The chosen candidates, each with the other readings of the same ink as probabilities, in order of
-    drawing.
+    """The chosen candidates, each with the other readings of the same ink as probabilities, in order of drawing.
 
     number: of each piece the stroke.  places: of each chosen candidate.
     """

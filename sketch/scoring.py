@@ -93,8 +93,7 @@ def unread(piece: Piece) -> float:
 
 
 def misfit(mean_square: float, count: float) -> float:
-    """Nats to say `count` observations, given a primitive that they are off by `mean_square` [shares of the
-    radius].
+    """Nats to say `count` observations, given a primitive that they are off by `mean_square` [shares of the radius].
 
     Student's t for a tremor that is unknown but about TREMOR, and a normal prior on how careless people are.
     """

@@ -36,8 +36,7 @@ class Hand:
         drift: slow wandering of the pen, likewise: sides bow, circles are no circles.
         rounding: how much of a side a corner rounds off, 0 to 0.5.
         hook: length of the turn back where the pen goes down, as a share of the size; drawn half of the time.
-        overshoot: how far strokes run past where they should end (negative: how much they lack), as a share
-        of the
+        overshoot: how far strokes run past where they should end (negative: how much they lack), as a share of the
             size: a spread about zero.
         parts: the numbers of strokes that outlines are drawn in.
         spacing: between points, as a share of the size.
