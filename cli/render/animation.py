@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cli.render.canvas import ONE, Box, Canvas
+from cli.render.canvas import ONE, Box, Canvas, Points
 from cli.render.figure import Figure
 from cli.render.style import mix
 
@@ -43,15 +43,23 @@ PLAIN = Extras()
 
 
 class Sheet:
-    """A canvas that knows where it was drawn on, and what it belongs to (a frame of the encoder's)."""
+    """A canvas that knows what lies under its drawing and where, and whose it is (a frame of the encoder's)."""
 
     def __init__(self, canvas: Canvas, frame: Any = None) -> None:
         self.canvas, self.frame = canvas, frame
-        self.used: list[Box] = [self.whole]
+        self._ground: Canvas | None = None
+        self._used: list[Box] | None = None
 
-    @property
-    def whole(self) -> Box:
-        return (0, 0, *self.canvas.planes[0].shape[1::-1])
+    def clear(self, ground: Canvas, at: tuple[int, int]) -> None:
+        """Show nothing but the ground, whose column and row `at` come first."""
+        boxes = [None] if self._used is None or self._ground is not ground else self._used
+        for box in boxes:
+            self.canvas.copy_from(ground, box, at)
+        self._ground = ground
+
+    def use(self, boxes: list[Box] | None) -> None:
+        """Tell where was drawn since it was clear; None: anywhere."""
+        self._used = boxes
 
 
 def frame_count(motion: Trajectory) -> int:
@@ -79,27 +87,40 @@ def drawn(
         span = slice(start, min(start + CHUNK, count))
         placed = figure.place(motion.positions[span], motion.angles[span])
         windows = _windows(figure, motion.positions[span], extras)
-        boxes = figure.boxes(placed)
+        # What rests for the whole chunk is drawn once, but not if trails still grow under it.
+        live = figure.live(placed) if trails is None else list(range(len(figure.parts)))
+        boxes = figure.boxes(placed, live)
+        ground: Canvas | None = None
         for k in range(span.start, span.stop):
             if not (changed[k] or times[k] != times[k - 1] or k in (0, count - 1)):
                 continue
             sheet = take()
             if background is None:
                 background = figure.background.to_yuv() if sheet.canvas.is_yuv else figure.background.copy()
+            if ground is None:
+                ground = _with_resting(figure, background, placed[0], live)
             if trails is not None:
                 trails.extend(background, k)
             at = windows[k - start]
-            for box in sheet.used:
-                sheet.canvas.copy_from(background, box, at)
-            figure.fill(sheet.canvas, placed[k - start] - np.array(at, np.int32) * ONE)
+            sheet.clear(ground, at)
+            figure.fill(sheet.canvas, placed[k - start] - np.array(at, np.int32) * ONE, only=live)
             if extras.vectors:
                 _draw_vectors(figure, sheet.canvas, motion, k, at)
             if extras.follow is not None:
                 figure.annotate(sheet.canvas)
             clock_box = figure.caption(sheet.canvas, times[k])
-            all_over = extras != PLAIN
-            sheet.used = [sheet.whole] if all_over else [boxes[k - start], clock_box]
+            sheet.use([*boxes[k - start], clock_box] if extras == PLAIN else None)
             yield k, sheet
+
+
+def _with_resting(figure: Figure, background: Canvas, placed: Points, live: list[int]) -> Canvas:
+    """The background with all parts but the live ones on it."""
+    resting = sorted(set(range(len(figure.parts))) - set(live))
+    if not resting:
+        return background
+    ground = background.copy()
+    figure.fill(ground, placed, only=resting)
+    return ground
 
 
 def changes(

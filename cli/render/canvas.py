@@ -5,7 +5,7 @@ Coordinates are fixed-point: 1/16 pixel, counted from the centre of the upper le
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, TypeAlias
@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from cli.render.outline import is_convex
 from cli.render.style import RGB
 
-__all__ = ["BLOOM", "ONE", "THIN", "Box", "Canvas", "fixed", "paint"]
+__all__ = ["BLOOM", "ONE", "THIN", "Box", "Canvas", "Stamp", "fixed", "paint", "stamp"]
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
 Points = NDArray[np.int32]
+Stamp: TypeAlias = tuple[tuple[NDArray[np.uint16], NDArray[np.uint16]], ...]
 Box: TypeAlias = tuple[int, int, int, int]  # left, top, right, bottom [pixels], right and bottom outside
 
 SHIFT = 4
@@ -121,24 +122,43 @@ class Canvas:
 
         On a video frame the corner has to be even.
         """
-        import cv2
+        self.put(stamp([(mask, color)], self.is_yuv), corner)
 
-        column, row = corner
-        height, width = self.planes[0].shape[:2]
-        left, top = max(0, -column), max(0, -row)
-        mask = mask[top : max(top, height - row), left : max(left, width - column)]
-        column, row = column + left, row + top
-        if mask.size == 0:
-            return
-        halved: Any = mask
-        if self.is_yuv:
-            halved = cv2.resize(mask, (mask.shape[1] // 2, mask.shape[0] // 2), interpolation=cv2.INTER_AREA)
-        for k, (plane, value) in enumerate(zip(self.planes, paint(color, self.is_yuv), strict=True)):
-            share, y, x = (halved, row // 2, column // 2) if k else (mask, row, column)
+    def put(self, stamp: Stamp, corner: tuple[int, int]) -> None:
+        """Lay a stamp over the picture, its corner at a column and row: even ones on a video frame."""
+        for k, (plane, (share, color)) in enumerate(zip(self.planes, stamp, strict=True)):
+            column, row = corner[0] >> (k > 0), corner[1] >> (k > 0)
+            height, width = plane.shape[:2]
+            left, top = max(0, -column), max(0, -row)
+            inside = slice(top, max(top, height - row)), slice(left, max(left, width - column))
+            share, color = share[inside], color[inside]
+            y, x = row + top, column + left
             at = plane[y : y + share.shape[0], x : x + share.shape[1]]
-            weight = share.astype(np.uint16).reshape(share.shape + (1,) * (plane.ndim - 2))
-            mixed = at * (255 - weight) + weight * np.asarray(value, np.uint16) + np.uint16(127)
-            at[:] = mixed // 255
+            at[:] = (at * share + color) >> 8
+
+
+def stamp(layers: Sequence[tuple[Bytes, RGB]], yuv: bool) -> Stamp:
+    """Colours over one another, each through its mask (h, w) of opacity: what `Canvas.put` lays on pictures.
+
+    For every plane what is left of a pixel [1/256], and what is added to that [1/256].
+    """
+    import cv2
+
+    planes = []
+    for k in range(2 if yuv else 1):
+        share: Any = 1.0
+        added: Any = 0.0
+        for mask, color in layers:
+            covering: Any = mask
+            if k > 0:
+                half = (mask.shape[1] // 2, mask.shape[0] // 2)
+                covering = cv2.resize(mask, half, interpolation=cv2.INTER_AREA)
+            value = np.array(paint(color, yuv)[k], float)
+            opacity = covering.reshape(covering.shape + (1,) * (len(value) > 1)) / 255
+            share, added = share * (1 - opacity), added * (1 - opacity) + value * opacity
+        kept = np.rint(256 * share).astype(np.uint16)
+        planes.append((kept, np.rint(256 * added + 127.5 * (kept < 256)).astype(np.uint16)))
+    return tuple(planes)
 
 
 def paint(color: RGB, yuv: bool) -> tuple[Any, ...]:

@@ -25,6 +25,7 @@ __all__ = ["Figure", "Part", "carried"]
 Array = NDArray[np.float64]
 
 ROUND = np.stack([f(np.arange(24) * np.pi / 12) for f in (np.cos, np.sin)], axis=1)  # a small disc's outline
+COPY = 10_000  # pixels that are copied in the time that it takes to begin
 SMOOTH = 4  # pixels that a smoothed edge may reach over the outline: two in the planes of half the resolution
 
 
@@ -189,17 +190,47 @@ class Figure:
         starts = [where.start for where in self._slices]
         return np.maximum.reduceat(np.abs(placed - other).max(axis=-1), starts, axis=-1)
 
-    def boxes(self, placed: Points) -> list[Box]:
-        """For each placed frame (n, points, 2) a box of even sides around all parts in the picture."""
-        if not self.parts:
-            return [(0, 0, 0, 0)] * len(placed)
+    def live(self, placed: Points) -> list[int]:
+        """The parts that placed frames (n, points, 2) cannot share: those that move, and what lies over them.
+
+        All others may be drawn once, under these.
+        """
+        starts = [where.start for where in self._slices]
+        if not starts:
+            return []
+        moving = np.logical_or.reduceat((placed != placed[0]).any(axis=(0, 2)), starts)
+        low, high = self._extent(placed)
+        low, high = low.min(axis=0), high.max(axis=0)
+        live = np.zeros(len(starts), bool)
+        for i in range(len(starts)):
+            below = live[:i] & np.all((low[:i] < high[i]) & (high[:i] > low[i]), axis=1)
+            live[i] = moving[i] or below.any()
+        return np.flatnonzero(live).tolist()
+
+    def boxes(self, placed: Points, parts: Sequence[int]) -> list[list[Box]]:
+        """For each placed frame (n, points, 2) boxes of even sides that hold some parts, as far as in the picture.
+
+        One box a body, or one for all where that is less to copy.
+        """
+        if not parts:
+            return [[] for _ in placed]
         limit = np.array(self.camera.size)
-        low, high = (np.clip(x >> SHIFT, 0, limit) for x in self._extent(placed))
-        seen = self.visible(placed)[..., None]
-        low, high = np.where(seen, low, limit).min(axis=1), np.where(seen, high, 0).max(axis=1)
-        corners = np.concatenate([low & ~1, (high + 2) & ~1], axis=1)
+        chosen = sorted(parts, key=lambda i: self.parts[i].body)
+        owners = np.array([self.parts[i].body for i in chosen])
+        starts = np.flatnonzero(np.diff(owners, prepend=-1))
+        low, high = (x[:, chosen] >> SHIFT for x in self._extent(placed))
+        low, high = np.minimum.reduceat(low, starts, axis=1), np.maximum.reduceat(high, starts, axis=1)
+        seen = np.all((high >= 0) & (low < limit), axis=-1)
+        low = np.where(seen[..., None], low.clip(0) & ~1, limit)
+        high = np.where(seen[..., None], (high.clip(max=limit) + 2) & ~1, 0)
+        all_low, all_high = low.min(axis=1), high.max(axis=1)
+        apart = ((high - low).clip(0).prod(axis=-1) + COPY * seen).sum(axis=1)
+        together = (all_high - all_low).clip(0).prod(axis=-1) + COPY
+        each = np.concatenate([low, high], axis=-1)
+        whole = np.concatenate([all_low, all_high], axis=-1)
         return [
-            (left, top, max(left, right), max(top, bottom)) for left, top, right, bottom in corners.tolist()
+            [tuple(box) for box in (each[k][seen[k]] if apart[k] < together[k] else whole[k, None]).tolist()]
+            for k in range(len(placed))
         ]
 
     def fill(

@@ -44,7 +44,6 @@ def write_gif(
     page = Sheet(Canvas.plain(size, figure.style.paper))
     palette = choose_palette(_samples(figure, motion, page))
     nearest = nearest_of(palette)
-    page.used = [page.whole]
     with writing(path), av.open(path, "w", format="gif", options={"loop": "0"}) as container:
         stream: Any = container.add_stream("gif", rate=Fraction(100))
         (stream.width, stream.height), stream.pix_fmt = size, "pal8"

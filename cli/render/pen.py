@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cli.render.canvas import BLOOM, Box, Canvas, fixed
+from cli.render.canvas import BLOOM, Box, Canvas, Stamp, fixed, stamp
 from cli.render.outline import inset, segment
 from cli.render.style import RGB, Style
 from cli.render.text import lettering
@@ -61,13 +62,17 @@ class Pen:
 
     def write(self, canvas: Canvas, text: str, corner: tuple[float, float], height: float) -> Box:
         """Letters with their upper left corner there [pixels]; returns the box that was written on."""
+        x, y = (2 * round(c / 2) for c in corner)
+        canvas.put(self._letters(text, height, canvas.is_yuv), (x, y))
+        rows, columns = self._mask(text, height).shape
+        return (x, y, min(x + columns, self.size[0]), min(y + rows, self.size[1]))
+
+    @lru_cache(maxsize=8)  # noqa: B019  a pen is two small values; a clock shows one text for several frames
+    def _letters(self, text: str, height: float, yuv: bool) -> Stamp:
+        """Letters with a halo of paper: legible on whatever lies under them."""
         import cv2
 
-        x, y = (2 * round(c / 2) for c in corner)
         mask = self._mask(text, height)
         reach = 2 * round(2 * self.unit) + 1
         halo: Any = cv2.dilate(mask, np.ones((reach, reach), np.uint8))
-        canvas.blend(halo, (x, y), self.style.paper)  # legible on whatever lies under it
-        canvas.blend(mask, (x, y), self.style.ink)
-        right, bottom = x + mask.shape[1], y + mask.shape[0]
-        return (x, y, min(right, self.size[0]), min(bottom, self.size[1]))
+        return stamp([(halo, self.style.paper), (mask, self.style.ink)], yuv)

@@ -109,10 +109,9 @@ def spinning(scene: Scene) -> Scene:
     return scene
 
 
-def test_redrawing_only_what_changed_leaves_no_trace(scene: Scene, straight: Straight) -> None:
-    figure = Figure(spinning(scene), fit(scene, (640, 480)), CLEAN)
-    motion = straight(scene, duration=1.5, fps=20)
-    sheets = [new_sheet((640, 480)) for _ in range(2)]
+def assert_as_drawn_afresh(figure: Figure, motion: Trajectory) -> None:
+    """Every frame at 20 Hz has the pixels that it has on sheets nothing was drawn on before."""
+    sheets = [new_sheet(figure.pen.size) for _ in range(2)]
     numbers = []
     for k, sheet in drawn(figure, motion, 20, lambda: sheets[len(numbers) % 2]):
         numbers.append(k)
@@ -121,7 +120,24 @@ def test_redrawing_only_what_changed_leaves_no_trace(scene: Scene, straight: Str
         figure.caption(fresh, f"{k // 2 / 10:.1f} s")
         for mine, its in zip(sheet.canvas.planes, fresh.planes, strict=True):
             assert np.array_equal(mine, its), f"frame {k}"
-    assert numbers == list(range(30))
+    assert numbers == list(range(len(motion) - 1))
+
+
+def test_redrawing_only_what_changed_leaves_no_trace(scene: Scene, straight: Straight) -> None:
+    figure = Figure(spinning(scene), fit(scene, (640, 480)), CLEAN)
+    assert_as_drawn_afresh(figure, straight(scene, duration=1.5, fps=20))
+
+
+def test_what_rests_for_a_while_lies_in_its_place_over_and_under_what_moves(
+    scene: Scene, straight: Straight
+) -> None:
+    """The ball goes to and fro; the box circles, rests beside its way, circles, and rests over its way."""
+    motion = straight(scene, duration=16.0, fps=20)
+    t = motion.times
+    motion.positions[:, 1] = np.stack([2.0 + 1.5 * np.sin(t), -0.9 + 0 * t], axis=1)
+    turn = np.where((t > 2.5) & (t < 7), 2.5, np.minimum(t, 9.5))
+    motion.positions[:, 2] = np.stack([2.0 - 1.5 * np.sin(turn), -1.9 - np.cos(turn)], axis=1)
+    assert_as_drawn_afresh(Figure(scene, fit(scene, (320, 240)), CLEAN), motion)
 
 
 def test_frames_at_rest_are_not_drawn_again(scene: Scene, straight: Straight, tmp_path: Path) -> None:
