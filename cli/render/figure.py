@@ -15,7 +15,7 @@ from cli.render.backdrop import backdrop
 from cli.render.camera import Camera
 from cli.render.canvas import BLOOM, ONE, SHIFT, THIN, Box, Canvas, Points, fixed, paint
 from cli.render.ink import Ink
-from cli.render.outline import inset, is_convex, rim, segment
+from cli.render.outline import inset, is_convex, rim, ring, segment
 from cli.render.pen import Pen
 from cli.render.style import RGB, Style, body_paints, mix
 from sim.scene import Body, Circle, Joint, Scene
@@ -24,7 +24,6 @@ __all__ = ["Figure", "Part", "carried"]
 
 Array = NDArray[np.float64]
 
-ROUND = np.stack([f(np.arange(24) * np.pi / 12) for f in (np.cos, np.sin)], axis=1)  # a small disc's outline
 COPY = 10_000  # pixels that are copied in the time that it takes to begin
 SMOOTH = 4  # pixels that a smoothed edge may reach over the outline: two in the planes of half the resolution
 
@@ -148,8 +147,7 @@ class Figure:
         rings = zip(radii, (style.ink, style.paper, style.ink), strict=True)
         # Polygons: cv2's circles of a few pixels are squares and crosses.
         return [
-            Part(moving[0], at + ROUND * (max(r - BLOOM, 0.5) / self.camera.scale), color)
-            for r, color in rings
+            Part(moving[0], at + ring(max(r - BLOOM, 0.5)) / self.camera.scale, color) for r, color in rings
         ]
 
     def place(self, positions: Array, angles: Array) -> Points:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["inset", "is_convex", "rim", "segment"]
+__all__ = ["inset", "is_convex", "rim", "ring", "segment"]
 
 Array = NDArray[np.float64]
 
@@ -58,6 +58,13 @@ def rim(v: Array, outer: float, inner: float) -> list[Array]:
     a, b = inset(v, outer), inset(v, inner)
     ends = zip(a, np.roll(a, -1, axis=0), np.roll(b, -1, axis=0), b, strict=True)
     return [np.array(quadrilateral) for quadrilateral in ends]
+
+
+def ring(radius: float) -> Array:
+    """A circle about the origin [pixels] as a polygon (n, 2) that stays within a tenth of a pixel of it."""
+    corners = max(8, int(np.ceil(np.pi / np.arccos(1 - min(0.1 / radius, 1.0)))))
+    turn = np.arange(corners) * (2 * np.pi / corners)
+    return radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
 
 
 def segment(a: Array, b: Array, width: float) -> Array:

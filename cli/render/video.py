@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CODECS", "sheet", "write_video", "writing"]
 
-AHEAD = 4  # frames drawn but not yet encoded
+AHEAD = 4  # frames that are drawn on or wait to be encoded; no more are made
 PIXELS = "nv12"  # yuv420p with the colours side by side, as x264 keeps it: two planes to draw on, not three
 
 
@@ -89,7 +89,7 @@ def write_video(
             done.frame.pts, done.frame.time_base = number, 1 / rate
             container.mux(stream.encode(done.frame))
 
-        with _Worker(encode, lambda item: free.put(item[1]), AHEAD) as encoder:
+        with _Worker(encode, lambda item: free.put(item[1])) as encoder:
             for item in drawn(figure, motion, fps, free.get, extras):
                 encoder.put(item)
                 progress((item[0] + 1) / frame_count(motion))
@@ -129,13 +129,13 @@ def _tag_colors(codec: Any) -> None:
 
 
 class _Worker:
-    """A thread that works on the items of a short queue; what it raises is raised again where items are put.
+    """A thread that works on the items of a queue; what it raises is raised again where items are put.
 
     release: is given every item afterwards, also those that are dropped because an earlier one failed.
     """
 
-    def __init__(self, work: Callable[[Any], None], release: Callable[[Any], None], ahead: int) -> None:
-        self._work, self._release, self._items = work, release, queue.Queue[Any](ahead)
+    def __init__(self, work: Callable[[Any], None], release: Callable[[Any], None]) -> None:
+        self._work, self._release, self._items = work, release, queue.SimpleQueue[Any]()
         self._failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run, daemon=True)
 
