@@ -25,7 +25,7 @@ __all__ = ["settle"]
 
 Points = NDArray[np.float64]
 
-ROUNDS = 4  # of choosing, each with what the readings chosen before say about those around them
+ROUNDS = 6  # of choosing, each with what the readings chosen before say about those around them
 OFF = 0.4  # of the scale of what it may belong to: ink further off than this is not explained
 SAMPLES = 8  # or a few more points of a stretch that are compared with what was fitted
 TO_COMPLEX = np.array([1, 1j])
@@ -77,18 +77,20 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
             candidates.append(c)
             taken.append(tuple(names))
             gains.append(gain)
-    told, context, proposed = gains, Context(), proposing(candidates, gains)
-    best, most = list[int](), -np.inf
-    tried: set[frozenset[int]] = set()
+    context, proposed = Context(), proposing(candidates, gains)
+    chosen, best, most = list[int](), list[int](), -np.inf
+    expected, told = np.array(gains), list[list[float]]()
     for _ in range(ROUNDS):
-        live = [k for k, gain in enumerate(told) if gain > 0]
-        chosen = [live[k] for k in best_packing([taken[k] for k in live], [told[k] for k in live])]
-        if frozenset(chosen) in tried:
+        live = np.flatnonzero(expected > 0).tolist()
+        packed = best_packing([taken[k] for k in live], expected[live].tolist())
+        last, chosen = chosen, [live[k] for k in packed]
+        if chosen == last:
             break
-        tried.add(frozenset(chosen))
-        told = context.gains([proposed], candidates, chosen, page.size)
-        if (total := sum(told[k] for k in chosen)) > most:  # as they stand around one another
+        told.append(context.gains([proposed], candidates, chosen, page.size))
+        if (total := sum(told[-1][k] for k in chosen)) > most:  # as they stand around one another
             best, most = chosen, total
+        # of two sets each may speak for the other: what all of them say in the mean speaks for one
+        expected = np.mean(told, axis=0)
     return [ways[page.pieces[i].stroke] for k in best for i in candidates[k].pieces]
 
 
