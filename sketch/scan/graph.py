@@ -55,6 +55,24 @@ class Graph:
                     out[edge.ends[side]].append((e, side))
         return out
 
+    def pieces(self) -> list[list[int]]:
+        """The edges that hang together, piece by piece; a ring is one by itself."""
+        meeting = self.branches()
+        out, seen = [], set[int]()
+        for first in range(len(self.edges)):
+            if first in seen:
+                continue
+            seen.add(first)
+            piece = [first]
+            for e in piece:
+                for node in self.edges[e].ends:
+                    for other, _ in meeting[node] if node >= 0 else ():
+                        if other not in seen:
+                            seen.add(other)
+                            piece.append(other)
+            out.append(piece)
+        return out
+
     def node(self, end: End) -> int:
         """The node at an end of an edge, -1 where it is free, -2 on a ring."""
         return self.edges[end[0]].ends[end[1]]

@@ -29,6 +29,7 @@ BRIDGE_COST = 0.06  # for each pen width of a bridge that two lines share
 UNEVEN = 0.5  # weight of the difference in bend between two branches
 ROUND_BEND = 1.0  # [rad] beyond which bends are not compared
 LONELY = 1.0  # the cost of an end at a junction, as the square of a turn in radians
+LOOP = 0.3  # of the length of a line that comes back: what shows where it is going
 KNOT = 8  # more branches than this are paired greedily
 
 
@@ -97,13 +98,20 @@ def find_junctions(graph: Graph, pen: float) -> list[Junction]:
         spread = float(np.max(np.hypot(*(graph.nodes[nodes] - centre).T)))
         reach = max(float(np.max(graph.radius[nodes])), spread + pen / 2)
         for end in ends[k]:
-            start, outward = heading(graph.outward(end), centre, reach, SIGHT * pen)
-            curvature = bend(graph.outward(end), start, SIGHT * pen)
+            points, sight = graph.outward(end), SIGHT * pen
+            if _is_loop(graph.edges[end[0]].ends, crossing):  # its other end shows where it comes from
+                sight = min(sight, max(LOOP * graph.edges[end[0]].length - reach, pen))
+            start, outward = heading(points, centre, reach, sight)
+            curvature = bend(points, start, SIGHT * pen)
             branches[k].append(Branch(end, start, outward, curvature * SIGHT * pen, centre))
     junctions = _share_bridges(graph, branches, crossing, pen)
     for e in short:
         junctions[_find(junctions, crossing[graph.edges[e].ends[0]])][2].append(e)
     return [Junction(b, _pair(b)[1], bridges) for _, b, bridges in junctions]
+
+
+def _is_loop(ends: tuple[int, int], crossing: list[int]) -> bool:
+    return ends[0] >= 0 and ends[1] >= 0 and crossing[ends[0]] == crossing[ends[1]]
 
 
 def _is_bridge(ends: tuple[int, int]) -> bool:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import thin, trace
 from sketch.scan.corners import begin_at_corner, sharpen_corners
+from sketch.scan.crossed import crossed
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.overlaps import overlapping
 from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
@@ -32,6 +33,7 @@ WIDEST_PEN = 6.4  # [pixels]: a wider pen is thinned at half the resolution
 FILLED = 0.025  # of the picture's size: no pen is as wide, so that all shapes are filled
 SMOOTHING = 0.8  # [points]: standard deviation of the smoothing along a stroke
 CERTAIN = -5.0  # [rad²]: a ring with less strain is not looked at as anything else
+FEW = 4  # lines: an X with a loop has three, what a ring joins has more
 NEARBY = 4  # [pixels] within which ink is compared with the darkest
 
 
@@ -124,21 +126,24 @@ def _strokes(seen: Traced) -> list[Points]:
     sharpen_corners(graph, distance, pen)
     drawn = Graph(graph.nodes, graph.radius, list(graph.edges))
     found, names = find_rings(mask, distance, pen), count()
-    _, rings = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
+    plain, rings = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
     whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen, names)
     rings += doubtful
     ways = Ways(graph, pen)
-    likeliest = [_drawn(way, seen) for way in ways.likeliest()] + [_drawn(ring, seen) for ring in rings]
+    first = ways.likeliest() + rings
+    likeliest = [_drawn(way, seen) for way in first]
     if ways.is_net:
         return [way.points for way in likeliest if len(way.points) > 1]
     others = [_drawn(way, seen) for way in ways.others()]
-    if whole is not None:
-        tangled = Ways(whole, pen)
-        known = {frozenset(way.ink) for way in likeliest + others}
-        more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
-        others += [_drawn(way, seen) for way in more]
+    for tangle in (small_pieces(plain), whole):
+        if tangle is not None:
+            tangled = Ways(tangle, pen)
+            known = {frozenset(way.ink) for way in likeliest + others}
+            more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
+            others += [_drawn(way, seen) for way in more]
     others += with_tails(likeliest + others, pen * seen.scale)
     others += [_drawn(way, seen) for way in overlapping(drawn, found, graph.edges, pen)]
+    others += [_drawn(way, seen) for way in crossed(drawn, first, distance, pen)]
     if others:
         height, width = mask.shape
         chosen = settle(likeliest, others, pen * seen.scale, width * seen.scale, height * seen.scale)
@@ -146,6 +151,12 @@ def _strokes(seen: Traced) -> list[Points]:
         left = [ring for ring in rings if used.isdisjoint(ring.ink)]
         likeliest = chosen + [_drawn(way, seen) for way in ways.likeliest(without=used) + left]
     return [way.points for way in likeliest if len(way.points) > 1]
+
+
+def small_pieces(graph: Graph | None) -> Graph | None:
+    """Those pieces of a tangle that may be one stroke by themselves; None without any."""
+    few = [] if graph is None else [e for piece in graph.pieces() if len(piece) <= FEW for e in piece]
+    return Graph(graph.nodes, graph.radius, [graph.edges[e] for e in few]) if graph and few else None
 
 
 def _drawn(way: Way, seen: Traced) -> Way:
