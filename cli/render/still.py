@@ -44,12 +44,8 @@ def strobe(figure: Figure, motion: Trajectory, trails: bool = False) -> Canvas:
     canvas = Canvas.plain(figure.camera.size, figure.style.paper)
     canvas.copy_from(figure.background)
     end = _last_change(figure, motion)
-    if end == 0:
-        figure.fill(canvas, figure.place(motion.positions[0], motion.angles[0]))
-        figure.caption(canvas, "at rest")
-        return canvas
-    interval = float(motion.times[1] - motion.times[0])
-    step = max(1, round(round_length(end * interval / FLASHES) / interval))
+    interval = float(motion.times[1] - motion.times[0]) if len(motion) > 1 else 1.0
+    step = max(1, round(round_length(max(end, 1) * interval / FLASHES) / interval))
     final = figure.place(motion.positions[end], motion.angles[end])
     machines = [(parts, _apart(figure, parts), [final]) for parts in _machines(figure)]
     for k in range(0, end, step):
@@ -61,7 +57,10 @@ def strobe(figure: Figure, motion: Trajectory, trails: bool = False) -> Canvas:
     if trails:
         Trails(figure, motion).extend(canvas, end)
     figure.fill(canvas, final)
-    figure.caption(canvas, f"every {step * interval:.3g} s, to {motion.times[end]:.3g} s")
+    moved = any(len(shown) > 1 for _, _, shown in machines)
+    figure.caption(
+        canvas, f"every {step * interval:.3g} s, to {motion.times[end]:.3g} s" if moved else "at rest"
+    )
     return canvas
 
 

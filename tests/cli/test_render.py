@@ -164,6 +164,17 @@ def test_strobe_shows_the_start_the_end_and_ghosts_between(scene: Scene, straigh
     assert np.abs(at_start - np.array(mix((0, 0, 255), CLEAN.paper, 0.62)[::-1])).max() < 45
 
 
+def test_strobe_of_a_scene_that_hardly_settles_is_one_at_rest(scene: Scene, straight: Straight) -> None:
+    figure = Figure(scene, fit(scene, (640, 480)), CLEAN)
+    settling = straight(scene, duration=2.0)
+    settling.positions[:, 1:] = settling.positions[0, 1:]
+    settling.positions[1:, 1, 1] -= 3 / figure.camera.scale
+    resting = straight(scene, duration=2.0)
+    resting.positions[:] = settling.positions[-1]
+    shown, still = (strobe(figure, motion).planes[0] for motion in (settling, resting))
+    assert np.array_equal(shown, still)
+
+
 def test_strobe_ends_where_the_motion_does(scene: Scene, straight: Straight) -> None:
     """Of ten seconds the ball moves for one: the end is where it stops, with the ghosts before it."""
     motion = straight(scene, duration=10.0)
