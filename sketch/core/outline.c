@@ -51,15 +51,20 @@ static const double PI = 3.14159265358979323846;
 static const double TREMOR = 0.045;     /* spread of ink about what was meant, in the frame: a share of the radius */
 static const double SLOPPY = 0.1;      /* nobody's ink is off by much more than this */
 static const double RETRACE = 1.0;      /* nats an observation of ink that was drawn already */
-static const double BOW = 0.0195;   /* usual bow of a straight side, as a share of its length */
+/* Nobody draws a straight side straight. Sides bow this way and that, by shares of their lengths that are spread as Student's
+ * t with four degrees, as writers differ and a hand slips; and nobody's are bent by much more than BENT. All of one
+ * outline to the same side they hardly bow: that is no polygon but something round. */
+static const double BOW = 0.0178;
+static const double BENT = 0.05;
+static const double ROUNDED = 0.018; /* usual mean bow, times the root of the number of sides */
 /* (tremor / bow)², while splitting: how much rather a side trembles than bows. Both are tried. */
 static const double STIFFNESS[2] = {0.02, 0.6};
-static const double FLAT = 0.8;    /* a corner that turns by less [rad] may be a bow, */
-static const double REFLEX = 1.2;  /* likewise one that turns inward */
+static const double FLAT = 0.8; /* a corner that turns by less [rad] may be a bow, */
+static const double REFLEX = 1.2; /* likewise one that turns inward */
 static const double TIE = 1e-9; /* nats that no polygon is better by that was found again from another beginning */
-static const double INWARD = 4.0;  /* nats that a corner which turns inward is rarer */
+static const double INWARD = 4.0; /* nats that a corner which turns inward is rarer */
 static const double FLATNESS = 0.096;
-static const double SHORT = 0.12;  /* and a side shorter than this share of the outline a rounded corner: */
+static const double SHORT = 0.12; /* and a side shorter than this share of the outline a rounded corner: */
 static const double WALL = 2.7; /* unless its two corners turn by more than this [rad] together: it is a wall's end */
 static const double SHORTNESS = 0.0096; /* the spreads say how fast such readings become unlikely */
 
@@ -121,7 +126,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
                           const double stretch[2], double cap2, Line *side, double *oddness, double *perimeter) {
     Line chord[SIDES];
     const double *x = r->x + start, *y = r->y + start; /* the samples are there twice, so that none is beyond the end */
-    double drawn[2 * SIDES];
+    double drawn[2 * SIDES], share[SIDES];
     for (int q = 0; q < k; q++) {
         chord[q] = side[q] = runs_line(r, (start + cut[q]) % r->n, cut[q + 1] - cut[q], stiffness);
         double off = 2.0 / 3 * side[q].bow; /* the drawn corners are the ends of the bows */
@@ -129,12 +134,15 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         chord[q].y += off * side[q].dx;
     }
     polygon_corners(r, start, cut, k, chord, drawn);
-    double sum = 0, odd = 0, around = 0, area = 0;
+    double sum = 0, around = 0, area = 0, bows = 0;
     for (int q = 0; q < k; q++) {
         const double *a = drawn + 2 * q, *b = drawn + 2 * ((q + 1) % k);
         around += length((b[0] - a[0]) / stretch[0], (b[1] - a[1]) / stretch[1]);
         area += a[0] * b[1] - a[1] * b[0];
+        share[q] = side[q].bow / fmax(length(b[0] - a[0], b[1] - a[1]), 1e-9);
+        bows += share[q] / k;
     }
+    double odd = 0.5 * k * bows * bows / (ROUNDED * ROUNDED);
     for (int q = 0; q < k; q++) {
         const double *a = drawn + 2 * q, *b = drawn + 2 * ((q + 1) % k);
         double dx = b[0] - a[0], dy = b[1] - a[1], l = length(dx, dy), bow = side[q].bow;
@@ -150,7 +158,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         const double *c = drawn + 2 * ((q + 2) % k);
         double turn = atan2(dx * (c[1] - b[1]) - dy * (c[0] - b[0]), dx * (c[0] - b[0]) + dy * (c[1] - b[1]));
         int reflex = turn * area < 0;
-        double bent = bow / (BOW * fmax(l, 1e-9));
+        double usual = (share[q] - bows) / BOW, most = share[q] / BENT;
         double flat = fmax((reflex ? REFLEX : FLAT) - fabs(turn), 0) / FLATNESS;
         double brief = fmin(SHORT, 0.7 / k) - length(dx / stretch[0], dy / stretch[1]) / fmax(around, 1e-9);
         if (brief > 0) { /* what rounds a corner turns by as much as a corner does; the end of a wall turns back */
@@ -160,7 +168,8 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
             brief *= fmin(fmax((WALL - back) / 0.5, 0), 1) / SHORTNESS;
         } else
             brief = 0;
-        odd += 0.5 * (bent * bent + flat * flat + brief * brief) + (reflex ? INWARD : 0);
+        odd += 2.5 * log1p(0.25 * usual * usual) + 0.5 * (most * most + flat * flat + brief * brief);
+        if (reflex) odd += INWARD;
     }
     *oddness = odd;
     *perimeter = around;

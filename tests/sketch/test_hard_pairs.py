@@ -51,6 +51,24 @@ def test_a_hexagon_is_no_circle(hand, rng) -> None:
     assert kinds(read(outline(ngon(6, 300, 300, 110), hand, rng))) == ["6-gon"]
 
 
+@pytest.mark.parametrize("corners", [3, 4])
+def test_sides_that_bow_this_way_and_that_are_sides(corners: int) -> None:
+    at = np.array(ngon(corners, 300, 300, 110) if corners == 3 else box(300, 300, 240, 140, 0.3))
+    sides = []
+    for k, (a, b) in enumerate(zip(at, np.roll(at, -1, axis=0), strict=True)):
+        t = np.linspace(0, 1, 20, endpoint=False)[:, None]
+        out = np.array([b[1] - a[1], a[0] - b[0]]) * (0.14, -0.14)[k % 2]
+        sides.append(a + t * (b - a) + 4 * t * (1 - t) * out)
+    assert kinds(read([np.concatenate([*sides, at[:1]])])) == [f"{corners}-gon"]
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.6, 2.2])
+def test_a_hasty_circle_is_a_circle(angle: float) -> None:
+    t = np.linspace(0, 2 * math.pi, 60)
+    ink = np.column_stack([110 * np.cos(t), 72 * np.sin(t)])
+    assert kinds(read([np.array(turned(ink.tolist(), angle, (300, 300)))])) == ["circle"]
+
+
 @hands
 def test_rectangle_trapezoid_parallelogram(hand, rng) -> None:
     straight = read(outline(box(300, 300, 240, 130, 0.2), hand, rng)).readings[0]
