@@ -64,6 +64,7 @@ static const double REFLEX = 1.2; /* likewise one that turns inward */
 static const double TIE = 1e-9; /* nats that no polygon is better by that was found again from another beginning */
 static const double INWARD = 4.0; /* nats that a corner which turns inward is rarer */
 static const double FLATNESS = 0.096;
+static const double THICK = 0.4; /* twice the area over the length: in thinner outlines ink is off by shares of that */
 static const double SHORT = 0.12; /* and a side shorter than this share of the outline a rounded corner: */
 static const double WALL = 2.7; /* unless its two corners turn by more than this [rad] together: it is a wall's end */
 static const double SHORTNESS = 0.0096; /* the spreads say how fast such readings become unlikely */
@@ -173,7 +174,9 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
     }
     *oddness = odd;
     *perimeter = around;
-    return sum / r->n;
+    /* The frame makes a straight wall as wide as it is long; one that turns a corner stays thin in it. */
+    double thick = fabs(area) / (THICK * fmax(around, 1e-9));
+    return sum / (r->n * fmin(thick * thick, 1));
 }
 
 /* A writer's precision goes with the size of what is drawn: being off counts by a part's own size, and where the part closes
