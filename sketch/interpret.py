@@ -26,8 +26,11 @@ JOINS = (
     0.3  # radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
 )
 NAILS = 0.12  # likewise of a pivot to the background: a ball in front of one body is common
-WHEEL = 100.0  # times that a circle with a much smaller one at its centre is likelier a wheel than a pin
+WHEEL = 20.0  # times that a circle with a much smaller one at its centre is likelier a wheel than a pin
 NEAR = 2.5  # radii from a pivot's centre to a body that it misses by a slip of the hand
+AROUND = 5.0  # radii, likewise to one whose ink runs on beyond its outline, into the circle
+ON = 0.5  # radii from a small circle's centre to where two bodies meet: a ball that lies on both is a whole one off
+CUT = 0.75  # of a wheel's radius, from its centre to a body that it overlaps too much for one that it only touches
 ROUGH = 20.0  # nats that a polygon leaves to be said about its ink: nineteen in twenty clean ones leave less
 UNSURE = 0.2  # a reading with a rival of this probability is named in the notes
 
@@ -51,7 +54,7 @@ def interpret(
         for k, r in enumerate((r for r in readings if r.solid), start=1)
     ]
     bodies = Bodies(drawn)
-    joints = _pivots(bodies, view.pixels_per_metre, notes)
+    joints = _pivots(sketch, bodies, view.pixels_per_metre, notes)
     drawn = [d for d in drawn if d.reading.solid]
     _number(drawn, joints)
     for reading in readings:
@@ -105,10 +108,10 @@ def _number(drawn: list[Drawn], joints: list[Joint]) -> None:
 # ---------------------------------------------------------------- pivots
 
 
-def _pivots(bodies: Bodies, ppm: float, notes: list[str]) -> list[Joint]:
+def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, notes: list[str]) -> list[Joint]:
     """Small circles over two bodies that overlap, or over one beside which they are small, become pivots."""
     joints: list[Joint] = []
-    places: list[tuple[Array, list[Drawn]]] = []
+    places: list[tuple[Array, float, list[Drawn], Joint]] = []
     circles = [
         d for d in bodies.drawn if d.reading.kind == "circle" and d.reading.forced not in ("ball", "circle")
     ]
@@ -116,7 +119,9 @@ def _pivots(bodies: Bodies, ppm: float, notes: list[str]) -> list[Joint]:
         at = circle.outline.mean(axis=0)
         radius = circle.size / math.sqrt(math.pi)
         forced = circle.reading.forced == "pivot"
-        under, odds = _under(circle, at, radius, bodies, forced)
+        under, odds = _under(sketch, circle, at, radius, bodies)
+        if forced:
+            under, odds = under or [d for _, d in _near(circle, at, NEAR * radius, bodies)][:1], 1.0
         if not under:
             continue
         if not forced and _pinned(circle, at, radius, bodies):
@@ -131,13 +136,18 @@ def _pivots(bodies: Bodies, ppm: float, notes: list[str]) -> list[Joint]:
             continue
         circle.reading.kind = "pivot"
         circle.reading.score *= odds
-        if any(same == under and math.dist(place, at) < radius for place, same in places):
-            continue  # the same pivot, drawn twice
-        places.append((at, under))
+        place = (float(at[0]) / ppm, -float(at[1]) / ppm)
+        # rings that overlap are one pivot; the smaller, which comes later, says better where it is
+        again = [j for other, r, same, j in places if same == under and math.dist(other, at) < r + radius]
+        for joint in again:
+            joint.position = place
+        if again:
+            continue
         if len(under) == 1 and odds < 1 - UNSURE:
             notes.append(_either(circle, f"a pivot of {_ids(under)} to the background", "a ball"))
         pair = (under[0].body.id, under[1].body.id if len(under) == 2 else None)
-        joints.append(Joint(bodies=pair, position=(float(at[0]) / ppm, -float(at[1]) / ppm)))
+        joints.append(Joint(bodies=pair, position=place))
+        places.append((at, radius, under, joints[-1]))
     return joints
 
 
@@ -153,27 +163,75 @@ def _pinned(circle: Drawn, at: Array, radius: float, bodies: Bodies) -> bool:
 
 
 def _under(
-    circle: Drawn, at: Array, radius: float, bodies: Bodies, forced: bool
+    sketch: Sketch, circle: Drawn, at: Array, radius: float, bodies: Bodies
 ) -> tuple[list[Drawn], float]:
-    """The bodies that a circle would be a pivot of, in order of drawing, and how likely it is one rather
-    than a ball."""
-    near = []
-    for d in bodies.near(at, NEAR * radius):
-        if d is not circle and d.reading.solid and radius < 2 * JOINS * d.size:
-            depth = d.depth(at)
-            if depth < NEAR * radius:
-                near.append((depth, d))
-    near.sort(key=lambda t: t[0])
-    if not near or (near[0][0] > 0 and not forced):
-        return [], 0.0  # over no body: a ball
-    under = [near[0][1]]
-    for depth, d in near[1:]:
-        if depth < 0 or touch(near[0][1], d, at, radius):
-            under.append(d)
-            break
-    limit = JOINS if len(under) == 2 else NAILS
-    odds = 1.0 if forced else 1 / (1 + (radius / (limit * min(d.size for d in under))) ** 6)
+    """The bodies that a circle would be a pivot of, in order of drawing, and how likely it is one rather than a ball.
+
+    The one that its centre is over, and one more that it is over or misses by a slip of the hand; or else two that
+    meet in it, if it is as small as a nail.
+    """
+    near = _near(circle, at, AROUND * radius, bodies)
+    off = {d: min(depth, _off_ink(sketch, d, at)) for depth, d in near}
+    over = bool(near) and near[0][0] <= 0
+    first = near[0][1] if over else min(off, key=lambda d: off[d], default=None)
+    if first is None or off[first] > ON * radius:
+        return [], 0.0
+    others = [d for depth, d in near if d is not first and (depth < 0 or (over and off[d] < radius))]
+    if not others:
+        reach = (NEAR if over else 1 + ON) * radius
+        others = [d for depth, d in near if d is not first and depth < reach and touch(first, d, at, radius)]
+    if over and not others:
+        others = _axle(first, circle, at, radius, bodies)
+    under = [first, *others[:1]]
+    if not over and len(under) == 1:
+        return [], 0.0
+    limit = JOINS if len(under) == 2 and over else NAILS
+    odds = 1 / (1 + (radius / (limit * min(d.size for d in under))) ** 6)
     return sorted(under, key=bodies.drawn.index), odds
+
+
+def _near(circle: Drawn, at: Array, reach: float, bodies: Bodies) -> list[tuple[float, Drawn]]:
+    """The bodies within `reach` of a circle that is small beside them, with the distances of its centre from them
+    [pixels], negative inside; the deepest first."""
+    radius = circle.size / math.sqrt(math.pi)
+    large = [
+        d
+        for d in bodies.near(at, reach)
+        if d is not circle and d.reading.solid and radius < 2 * JOINS * d.size
+    ]
+    near = [(depth, d) for d in large if (depth := d.depth(at)) < reach]
+    return sorted(near, key=lambda t: t[0])
+
+
+def _axle(wheel: Drawn, circle: Drawn, at: Array, radius: float, bodies: Bodies) -> list[Drawn]:
+    """What a circle at the centre of a wheel joins it to: the body that the wheel overlaps the most, if by much.
+
+    A wheel that is pinned to the background stands free, or touches.
+    """
+    r = wheel.size / math.sqrt(math.pi)
+    if wheel.reading.kind != "circle" or math.dist(at, wheel.outline.mean(axis=0)) > JOINS * r:
+        return []
+    others = [
+        (d.depth(at), d)
+        for d in bodies.near(at, CUT * r)
+        if d is not wheel
+        and d is not circle
+        and d.reading.solid
+        and r < 2 * d.size
+        and radius < 2 * JOINS * d.size
+    ]
+    return [d for depth, d in sorted(others, key=lambda t: t[0]) if depth < CUT * r]
+
+
+def _off_ink(sketch: Sketch, d: Drawn, at: Array) -> float:
+    """The distance of a point from the ink that a body was drawn with [pixels]."""
+    best = math.inf
+    for s in d.reading.strokes:
+        a, b = sketch.strokes[s].points[:-1, :2], sketch.strokes[s].points[1:, :2]
+        along, to = b - a, at - a
+        t = np.clip((to * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-12), 0, 1)
+        best = min(best, float(np.hypot(*(to - t[:, None] * along).T).min(initial=math.inf)))
+    return best
 
 
 def _ids(bodies: list[Drawn]) -> str:
