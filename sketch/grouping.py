@@ -14,12 +14,13 @@ from sketch.kernel import Point, Shaft
 from sketch.loose import Chain
 from sketch.pieces import Array, Page, Piece
 
-__all__ = ["closing_chains", "closing_ink", "crosses", "shafts"]
+__all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "shafts"]
 
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
 MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
-MOST_OPEN = 4  # and of those with wide gaps, which are many in a tangle
+MOST_OPEN = 6  # and of those with wide gaps, which are many in a tangle
 WIDE = 0.1  # of a chain's ink
+PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
 DETOUR = 1.5  # of that distance: the longest way over other ink
@@ -28,13 +29,13 @@ HEAD_SPAN = 1.2  # as far from it as it goes,
 HEAD_SIZE = 2.0  # and as large as it is
 
 
-def closing_chains(page: Page, start: int) -> list[Chain]:
+def closing_chains(page: Page, start: int) -> list[tuple[float, Chain]]:
     """Orders of pieces whose ends meet around, of which `start` is the first drawn, each set of pieces in its
-    tightest order, the tightest first."""
-    tightest = sorted(page.chains(start), key=lambda t: t[0] / t[1])
+    tightest order, the tightest first: its gaps, as a share of its ink, and the order."""
+    tightest = sorted(page.chains(start), key=lambda t: t[0] / t[1] + PART * len(t[2]))
     close = sum(gaps <= WIDE * ink for gaps, ink, _ in tightest)
     wide = MOST_CHAINS if page.rivals else MOST_OPEN
-    return [chain for _, _, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]
+    return [(gaps / ink, chain) for gaps, ink, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]
 
 
 def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 Chain = list[tuple[int, bool]]  # pieces that go once around, each with whether it was drawn the other way
 End = int  # 2 * piece for where a piece begins, one more for where it ends
 
-CHOICES, MOST_PARTS, MOST_STEPS = 6, 6, 400  # as in core/chains.c, where it says what they are
+CHOICES, MOST_PARTS, MOST_STEPS = 6, 6, 283  # as in core/chains.c, where it says what they are
 REACH = 1.5 * 0.3  # likewise
 UNKNOWN = -1  # neighbours that nobody has asked for yet
 

@@ -92,7 +92,7 @@ def _bars(pieces: list[Piece]) -> np.ndarray:
 def _around(page: Page, pieces: list[Piece]) -> Chain:
     """The pieces in an order that goes around: the tightest that closes, else each to the nearest end."""
     wanted = {p.index for p in pieces}
-    for chain in closing_chains(page, min(wanted)) if len(pieces) > 1 else ():
+    for _, chain in closing_chains(page, min(wanted)) if len(pieces) > 1 else ():
         if {i for i, _ in chain} == wanted:
             return chain
     chain, left = [(pieces[0].index, False)], pieces[1:]

@@ -19,7 +19,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.grouping import closing_chains, closing_ink, crosses, shafts
+from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, shafts
 from sketch.loose import End
 from sketch.marks import read_arrows, read_bar, read_cross, read_line, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
@@ -29,6 +29,7 @@ from sketch.scoring import Fitted
 __all__ = ["Box", "Proposals", "Proposed", "proposing"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
+CLOSED = 0.04  # of its ink, what is missing at most of an outline that needs no other ink
 HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less than that for it
 
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
@@ -161,7 +162,7 @@ class Proposals:
             return Alone([], False, False)
         outlines = read_outline(self.page, [(p.index, False)])
         best = min(outlines, key=lambda f: f.cost)
-        loop = best.gap < 0.04 and best.narrow > 0.2 * p.extent
+        loop = best.gap < CLOSED and best.narrow > 0.2 * p.extent
         complete = best.gap < 0.1 and (loop or best.cost < 0.6 * p.unread)
         return Alone(outlines, complete, complete and best.cost < PLAIN * p.unread)
 
@@ -177,12 +178,18 @@ class Proposals:
             return fits[key]
 
         out: list[Fitted] = []
-        for chain in [[(p.index, False)]] if alone.complete else closing_chains(page, p.index):
+        whole: list[tuple[float, frozenset[int]]] = []
+        for gap, chain in [(0.0, [(p.index, False)])] if alone.complete else closing_chains(page, p.index):
+            group = frozenset(i for i, _ in chain)
+            if any(closed < group and tight + WIDE < gap for tight, closed in whole):
+                continue
             if len(chain) == 1 and alone.outlines:
                 found = alone.outlines
             else:
                 key = tuple(i for i, _ in chain), tuple(back for _, back in chain)
                 found = fitted(key, partial(read_outline, page, chain))
+            if _closes(min(found, key=lambda f: f.cost), self._said(tuple(group))):
+                whole.append((gap, group))
             out += found
             out += _again(page, found, self.free)
         for j, ink in () if alone.complete else closing_ink(page, p):
@@ -231,6 +238,11 @@ def proposing(
         boxes = np.concatenate([low, high], axis=1)
         box = (*low.min(axis=0).tolist(), *high.max(axis=0).tolist())
     return Proposed(candidates, gains, boxes, box, seen, _around(seen.boxes), {} if fits is None else fits)
+
+
+def _closes(outline: Fitted, free: float) -> bool:
+    """Whether an outline needs no further ink, given the nats to say its own freely."""
+    return outline.gap < CLOSED and outline.cost < PLAIN * free
 
 
 def _kept(found: Fitted | None) -> list[Fitted]:

@@ -7,7 +7,8 @@
 enum {
     CHOICES = 6,      /* ends that a chain may go on to, the nearest */
     MOST_PARTS = 6,   /* of one outline: people draw a box in one to five strokes */
-    MOST_STEPS = 400, /* from one piece, of chains that may close: in shading every end has many others near it */
+    BREADTH = 80, /* ways of so many parts that are gone on with, the tightest: in shading every end has many near it */
+    MOST_STEPS = 1 + CHOICES + CHOICES * CHOICES + 3 * BREADTH, /* ways from one piece, at most */
     UNKNOWN = -1
 };
 
@@ -23,16 +24,16 @@ typedef struct {
 } Chain;
 
 typedef struct {
-    int rows;                     /* ends: rows 2i and 2i + 1 are of piece i */
-    const double *at, *length;    /* (rows, 2) [pixels]; (rows) of their pieces */
-    const uint8_t *loose;         /* (rows) whether chains go through it */
+    int rows; /* ends: rows 2i and 2i + 1 are of piece i */
+    const double *at, *length; /* (rows, 2) [pixels]; (rows) of their pieces */
+    const uint8_t *loose; /* (rows) whether chains go through it */
     const int32_t *rivals,
         *from; /* of piece i the pieces, in order, that share ink with it: rivals[from[i] .. from[i + 1]] */
-    int32_t *count, *near;        /* of each end the nearest others, or UNKNOWN: how many, (rows, CHOICES) which */
-    double *gap;                  /* and how far [pixels] */
-    int steps, found, asked;
+    int32_t *count, *near; /* of each end the nearest others, or UNKNOWN: how many, (rows, CHOICES) which */
+    double *gap; /* and how far [pixels] */
+    int found, asked;
     int32_t *ends; /* whose neighbours were asked for */
-    Chain way, best[MOST_STEPS];
+    Chain best[MOST_STEPS];
 } Search;
 
 int ink_apart(const int32_t *rivals, const int32_t *from, int i, int j) {
@@ -65,45 +66,55 @@ static void look_around(Search *s, int end) {
     s->count[end] = n;
 }
 
-/* Keep the chain if it is the tightest of its pieces. */
-static void keep(Search *s, double gaps, double ink) {
-    Chain *way = &s->way;
-    way->gaps = gaps;
-    way->ink = ink;
+/* Keep a way around if it is the tightest of its pieces. */
+static void keep(Search *s, const Chain *way, double gaps) {
+    Chain chain = *way;
+    chain.gaps = gaps;
     for (int k = 0; k < way->parts; k++) {
         int at = k, name = way->links[k] / 2;
-        for (; at > 0 && way->names[at - 1] > name; at--) way->names[at] = way->names[at - 1];
-        way->names[at] = name;
+        for (; at > 0 && chain.names[at - 1] > name; at--) chain.names[at] = chain.names[at - 1];
+        chain.names[at] = name;
     }
     for (int b = 0; b < s->found; b++) {
         Chain *other = &s->best[b];
-        if (other->parts == way->parts && !memcmp(other->names, way->names, way->parts * sizeof *way->names)) {
-            if (gaps < other->gaps) *other = *way;
+        if (other->parts == chain.parts && !memcmp(other->names, chain.names, chain.parts * sizeof *chain.names)) {
+            if (gaps < other->gaps) *other = chain;
             return;
         }
     }
-    s->best[s->found++] = *way;
+    s->best[s->found++] = chain;
 }
 
-static void extend(Search *s, double gaps, double ink) {
-    Chain *way = &s->way;
-    if (++s->steps > MOST_STEPS) return;
+/* Whether a piece may follow on a way: drawn after its first, not on it, and of other ink. */
+static int may_follow(const Search *s, const Chain *way, int piece) {
+    if (piece <= way->links[0] / 2) return 0;
+    for (int k = 0; k < way->parts; k++)
+        if (way->links[k] / 2 == piece || !apart(s, piece, way->links[k] / 2)) return 0;
+    return 1;
+}
+
+/* Close a way, if it is tight enough then, and go on with it: its continuations go among the BREADTH tightest. Returns how
+ * many those are. */
+static int extend(Search *s, const Chain *way, Chain *longer, int count) {
     int start = way->links[0], last = way->links[way->parts - 1] ^ 1;
     double closing = hypot(s->at[2 * last] - s->at[2 * start], s->at[2 * last + 1] - s->at[2 * start + 1]);
-    if (gaps + closing <= LOOSE * ink) keep(s, gaps + closing, ink);
-    if (way->parts == MOST_PARTS) return;
+    if (way->gaps + closing <= LOOSE * way->ink) keep(s, way, way->gaps + closing);
+    if (way->parts == MOST_PARTS) return 0;
     s->ends[s->asked++] = last;
     if (s->count[last] == UNKNOWN) look_around(s, last);
     for (int c = 0; c < s->count[last]; c++) {
-        int next = s->near[CHOICES * last + c], own = next / 2 > start / 2;
-        for (int k = 0; k < way->parts; k++) own = own && way->links[k] / 2 != next / 2;
-        for (int k = 0; k < way->parts; k++) own = own && apart(s, next / 2, way->links[k] / 2);
-        double longer = ink + s->length[next], wider = gaps + s->gap[CHOICES * last + c];
-        if (!own || wider > 2 * LOOSE * longer) continue;
-        way->links[way->parts++] = next;
-        extend(s, wider, longer);
-        way->parts--;
+        int next = s->near[CHOICES * last + c];
+        double ink = way->ink + s->length[next], gaps = way->gaps + s->gap[CHOICES * last + c];
+        if (gaps > 2 * LOOSE * ink || !may_follow(s, way, next / 2)) continue;
+        if (count == BREADTH && gaps * longer[count - 1].ink >= longer[count - 1].gaps * ink) continue;
+        int at = count < BREADTH ? count++ : BREADTH - 1;
+        for (; at > 0 && longer[at - 1].gaps * ink > gaps * longer[at - 1].ink; at--) longer[at] = longer[at - 1];
+        longer[at] = *way;
+        longer[at].links[longer[at].parts++] = next;
+        longer[at].gaps = gaps;
+        longer[at].ink = ink;
     }
+    return count;
 }
 
 /* Chains that close and of which piece `start` is the first: each set of pieces in its tightest order.
@@ -125,11 +136,17 @@ INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length,
     s.count = count;
     s.near = near;
     s.gap = gap;
-    s.steps = s.found = s.asked = 0;
+    s.found = s.asked = 0;
     s.ends = ends;
-    s.way.links[0] = 2 * start;
-    s.way.parts = 1;
-    extend(&s, 0, length[2 * start]);
+    /* Of few parts first: what two pieces make is seen however many others lie about. */
+    Chain ways[2][BREADTH] = {{{.links = {2 * start}, .parts = 1, .ink = length[2 * start]}}};
+    for (int parts = 1, count = 1; count > 0; parts++) {
+        const Chain *now = ways[(parts + 1) % 2];
+        Chain *longer = ways[parts % 2];
+        int more = 0;
+        for (int k = 0; k < count; k++) more = extend(&s, now + k, longer, more);
+        count = more;
+    }
     for (int c = 0; c < s.found; c++) {
         memcpy(links + MOST_PARTS * c, s.best[c].links, sizeof s.best[c].links);
         parts[c] = s.best[c].parts;
