@@ -31,7 +31,7 @@ TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.25  # of a bar's extent: as near as the strokes of a letter are
 LETTER = 0.15  # of the page: larger bars are no letter
 DENSE = 64  # points of an open line that are compared with others, or so
-TWIG = 0.04  # of the page: an open line that is shorter is a slip too
+TWIG = 0.04  # of the page: an open line, or an arrow, that is shorter is a slip too
 DOT = 0.012  # of the page: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
 
@@ -92,7 +92,7 @@ def _told(proposed: Proposed, rows: list[Row], bodies: _Bodies, size: float) -> 
             gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY * (1 + large)
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
-            gains[k] -= SLIP * bodies.slip(c, extent)
+            gains[k] -= SLIP * ((extent < TWIG * size) + bodies.slip(c, extent))
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * size or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)
