@@ -17,6 +17,9 @@ RING = (-2, -2)  # the ends of an edge that closes on itself
 SIGHT = 4.0  # pen widths along a branch that show where it is going
 SMOOTH = 0.04  # of the sight: how far an arc may be off a parabola
 OVERSHOOT = 2.5  # pen widths that a line may go on past its corner
+DOUBLE = 1.3  # pen widths: wider ink is that of two lines
+MERGED = 10.0  # pen widths that two lines from one tip may be one
+STRAIGHT_ON = 0.8  # cosine of the angle between a tip and the lines that go on from it
 Ink = dict[int, Points]  # stretches of the skeleton by name, each shape (n, 2) [pixels]
 End = tuple[int, int]  # an edge and which of its ends
 
@@ -97,6 +100,7 @@ def build_graph(chains: Chains, distance: NDArray[Any], pen: float) -> Graph:
         graph.edges.append(Edge(np.array([*head, *points, *tail, *closed]), ends))
     _drop_twigs(graph)
     _drop_overshoots(graph, pen)
+    _turn_hairpins(graph, distance, pen)
     return graph
 
 
@@ -185,6 +189,41 @@ def _drop_overshoots(graph: Graph, pen: float) -> None:
                 corners[node] = corner
     graph.edges = [edge for e, edge in enumerate(graph.edges) if e not in gone]
     _join_passed_nodes(graph, corners)
+
+
+def _turn_hairpins(graph: Graph, distance: NDArray[Any], pen: float) -> None:
+    """Lead lines that come back beside themselves around their tips, where their ink is one.
+
+    A skeleton shows such a tip as a short line with two that go on from it.
+    """
+    gone: set[int] = set()
+    tips: dict[int, Points] = {}
+    for node, meeting in enumerate(graph.branches()):
+        free = [end for end in meeting if graph.node((end[0], 1 - end[1])) == -1]
+        if len(meeting) != 3 or not free:
+            continue
+        tip = min(free, key=lambda end: graph.edges[end[0]].length)
+        sides = [end for end in meeting if end != tip]
+        line = graph.outward(tip)
+        long = graph.edges[tip[0]].length
+        x, y = np.round(line).astype(int).T
+        double = 2 * float(np.median(distance[y, x])) > DOUBLE * pen
+        shortest = min(graph.edges[e].length for e, _ in sides)
+        if sides[0][0] == sides[1][0] or long > (MERGED * pen if double else min(OVERSHOOT * pen, shortest)):
+            continue
+        centre, reach = graph.nodes[node], graph.radius[node] + 1
+        ahead = _unit(line[-1] - line[0])
+        if all(
+            heading(graph.outward(end), centre, reach, SIGHT * pen)[1] @ ahead < -STRAIGHT_ON for end in sides
+        ):
+            gone.add(tip[0])
+            tips[node] = line[-1]
+    graph.edges = [edge for e, edge in enumerate(graph.edges) if e not in gone]
+    _join_passed_nodes(graph, tips)
+
+
+def _unit(v: Points) -> Points:
+    return np.asarray(v / max(float(np.hypot(*v)), 1e-9))
 
 
 def _corner(graph: Graph, node: int, sides: list[End], pen: float) -> Points | None:
