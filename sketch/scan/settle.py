@@ -15,10 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.context import Context
+from sketch.marks import RARE, RARE_ARROW
+from sketch.outlines import ARC, BOX, CORNER, ELLIPSE, FREEFORM, ROUND
 from sketch.proposals import Proposals, proposing
 from sketch.scan.graph import Ink
 from sketch.scan.ways import Way
-from sketch.scoring import STRANGE, Fitted
+from sketch.scoring import PARAMETER, STRANGE, Fitted
 from sketch.search import best_packing
 
 __all__ = ["settle"]
@@ -44,6 +46,7 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
     proposals.add([way.points for way in ways])
     page = proposals.page
     free: dict[int, float] = {}  # nats to say each stretch of ink freely, as strokes of the likeliest ways
+    fine: dict[int, float] = {}  # observations that it is worth, likewise
     strange: dict[int, float] = {}  # of these, for being a stroke of its own
     scale: dict[int, float] = {}  # [pixels] of the smallest thing that it may be part of
     for p in page.pieces.values():
@@ -52,6 +55,7 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         if p.stroke < len(likeliest):
             count = max(sum(map(len, stretches.values())), 1)
             free.update((name, p.unread / count * len(points)) for name, points in stretches.items())
+            fine.update((name, p.observations / count * len(points)) for name, points in stretches.items())
             strange.update((name, STRANGE / count * len(points)) for name, points in stretches.items())
     some = {name: points[:: len(points) // SAMPLES + 1] for names in ink for name, points in names.items()}
     candidates: list[Fitted] = []
@@ -61,12 +65,15 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         if not all(page.apart(i, c.pieces) for i in c.pieces):
             continue
         names: Ink = {name: points for i in c.pieces for name, points in ink[i].items()}
-        own = sum(page.pieces[i].unread for i in c.pieces)
         strain = sum(ways[page.pieces[i].stroke].strain for i in c.pieces)
         tails = {name for i in c.pieces for name in ways[page.pieces[i].stroke].tail}
-        said = sum(free.get(name, 0.0) for name in names) - sum(strange.get(name, 0.0) for name in tails)
-        # ink that is freely said in more strokes than these is a coarser measure of their cost, never a finer one
-        gain = said - c.cost * max(said / own, 1.0) - STRAIN * strain
+        said_freely = sum(free.get(name, 0.0) for name in names)
+        said_freely -= sum(strange.get(name, 0.0) for name in tails)
+        # what is off its ink is said as finely as that ink is said freely, in more strokes maybe, never less finely
+        own = sum(page.pieces[i].observations for i in c.pieces)
+        finer = max(sum(fine.get(name, 0.0) for name in names) / own, 1.0)
+        said = _said(c)
+        gain = said_freely - said - (c.cost - said) * finer - STRAIN * strain
         # the strokes of a cross, and of an arrow in one stroke, are judged as a whole
         if gain > 0 and c.kind != "cross" and not (c.kind == "arrow" and len(c.pieces) == 1):
             body = [name for name in names if name not in tails]
@@ -92,6 +99,22 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
         # of two sets each may speak for the other: what all of them say in the mean speaks for one
         expected = np.mean(told, axis=0)
     return [ways[page.pieces[i].stroke] for k in best for i in candidates[k].pieces]
+
+
+def _said(fitted: Fitted) -> float:
+    """Nats to say a shape, without where its ink is."""
+    corners = len(fitted.outline)
+    least = {
+        "circle": ROUND,
+        "ellipse": ROUND + ELLIPSE,
+        "rectangle": BOX,
+        "polygon": 2 * corners * CORNER,
+        "free": FREEFORM + 3 * ARC,
+        "bar": RARE + 2 * corners * PARAMETER,
+        "cross": 6 * PARAMETER,
+        "arrow": RARE_ARROW + 4 * PARAMETER,
+    }
+    return min(least[fitted.kind], fitted.cost)
 
 
 def _off(fitted: Fitted, stretches: list[Points]) -> Points:
