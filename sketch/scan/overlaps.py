@@ -9,6 +9,7 @@ for their outlines and share as little as can be: that two outlines run along ea
 
 from __future__ import annotations
 
+from cmath import phase
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,7 +18,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import RING, Edge, Graph, Ink
+from sketch.scan.graph import RING, SIGHT, Edge, Graph, Ink
+from sketch.scan.junctions import CROSSING
+from sketch.scan.outlines import SMOOTH, ends_cost
 from sketch.scan.ways import Way
 
 __all__ = ["overlapping"]
@@ -38,10 +41,10 @@ LEFT = 25.0  # to leave a line over,
 SHARED = 60.0  # for two outlines that are the same in full, in part for a part,
 DENTED = 100.0  # for an outline that takes nothing of its hull's area
 PIVOT = 15.0  # that a ring is likelier over two bodies than elsewhere
+CLEAR = 1.0  # pen widths from a crossing where a line is clear of its ink
 BESIDE = 0.9  # pen widths: ink as near to an outline is its ink
 MOSTLY = 0.8  # of a stretch of ink must be
 PLACES = 12  # or a few less, of a stretch that are looked at
-STRAIN = 1.0  # [rad²] of an outline that was not followed from line to line
 
 
 @dataclass(eq=False)
@@ -62,9 +65,13 @@ class _Face:
 
 @dataclass(frozen=True, eq=False)
 class _Body:
-    """A convex union: the way around it [pixels], the lines along that, and its cost by itself [nats]."""
+    """A convex union: the way around it [pixels], the lines along that, and its cost by itself [nats].
+
+    outer: the half-edges around it.
+    """
 
     points: Points
+    outer: list[int]
     faces: frozenset[int]
     lines: frozenset[int]
     cost: float
@@ -86,7 +93,8 @@ def overlapping(graph: Graph, rings: list[Way], inked: list[Edge], pen: float) -
         chosen = _fewest(bodies, sheet.length, knot.pivots) if 1 < len(bodies) <= MOST_BODIES else []
         if len(chosen) > 1:
             stretches: Ink = {name: points for edge in inked for name, points in edge.ink.items()}
-            out += _ways([bodies[k].points for k in chosen], stretches, pen)
+            strains = [sheet.strain(bodies[k]) for k in chosen]
+            out += _ways([bodies[k].points for k in chosen], strains, stretches, pen)
     return out
 
 
@@ -114,6 +122,7 @@ class _Sheet:
                 self._way[h] = way = edge.points[::-1] if side else edge.points
                 dx, dy = way[min(max(round(pen), 2), len(way) - 1)] - way[0]
                 leaving.setdefault(edge.ends[side], []).append((float(np.arctan2(dy, dx)), h))
+        self._leaving = {h: [other for _, other in around] for around in leaving.values() for _, h in around}
         self._next: dict[int, int] = {}
         for around in leaving.values():
             around.sort()
@@ -254,7 +263,49 @@ class _Sheet:
             if (area := abs(_area(points))) > most:
                 outer, around, most = loop, points, area
         lines = frozenset(h >> 1 for h in outer if self.length[h >> 1] > SHORT * self._pen)
-        return _Body(np.concatenate([around, around[:1]]), counting, lines, cost)
+        return _Body(np.concatenate([around, around[:1]]), outer, counting, lines, cost)
+
+    def strain(self, body: _Body) -> float:
+        """What it costs that an outline turns where lines go straight on that then have to end there [rad²]."""
+        around = body.points[:-1]
+        steps = np.hypot(*np.diff(body.points, axis=0).T)
+        starts = np.cumsum([0, *(len(self._way[h]) - 1 for h in body.outer[:-1])])
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        mine = {h >> 1 for h in body.outer}
+        total = 0.0
+        crossings: list[list[int]] = []
+        for k, at in enumerate(starts):
+            if crossings and along[at] - along[starts[crossings[-1][-1]]] < CROSSING * self._pen:
+                crossings[-1].append(k)
+            else:
+                crossings.append([k])
+        for crossing in crossings:
+            first, last = starts[crossing[0]], starts[crossing[-1]]
+            back = _leaving(np.roll(around[::-1], first + 1, axis=0), self._pen)
+            ahead = _leaving(np.roll(around, -last, axis=0), self._pen)
+            others = [
+                _leaving(self._way[h], self._pen)
+                for k in crossing
+                for h in self._leaving[body.outer[k]]
+                if h >> 1 not in mine and self.length[h >> 1] > SHORT * self._pen
+            ]
+            if others and (turn := _turn(back, ahead)) > SMOOTH:
+                ends = sum(
+                    min(_turn(here, other) for other in others) < min(turn, SMOOTH) for here in (back, ahead)
+                )
+                total += ends_cost(ends)
+        return total
+
+
+def _leaving(way: Points, pen: float) -> complex:
+    """The direction in which a line leaves a crossing, clear of its ink."""
+    near, far = (min(round(reach * pen), len(way) - 1) for reach in (CLEAR, SIGHT))
+    return complex(*(way[far] - way[min(near, far // 2)]).tolist())
+
+
+def _turn(a: complex, b: complex) -> float:
+    """The turn from one line into another, given how both leave a crossing [rad²]."""
+    return phase(-b / a) ** 2 if a and b else 0.0
 
 
 def _connected(beside: dict[int, set[int]]) -> Iterator[frozenset[int]]:
@@ -317,10 +368,10 @@ def _fewest(bodies: list[_Body], length: dict[int, float], pivots: list[int]) ->
         chosen = found
 
 
-def _ways(outlines: list[Points], stretches: Ink, pen: float) -> list[Way]:
+def _ways(outlines: list[Points], strains: list[float], stretches: Ink, pen: float) -> list[Way]:
     """Ways along outlines [pixels] that overlap: each with its share of the ink, and with all of it.
 
-    stretches: of the skeleton [pixels], by name.
+    strains: of each [rad²].  stretches: of the skeleton [pixels], by name.
     """
     near = [_beside(outline, stretches, pen) for outline in outlines]
     mine: list[list[int]] = [[] for _ in outlines]
@@ -333,8 +384,8 @@ def _ways(outlines: list[Points], stretches: Ink, pen: float) -> list[Way]:
             mine[k].append(name)
             had[k] += len(stretches[name])
     return [
-        Way(points, {name: stretches[name] for name in sorted(names)}, STRAIN)
-        for points, along, own in zip(outlines, near, mine, strict=True)
+        Way(points, {name: stretches[name] for name in sorted(names)}, strain)
+        for points, strain, along, own in zip(outlines, strains, near, mine, strict=True)
         for names in dict.fromkeys((along, frozenset(own)))
         if names
     ]

@@ -31,7 +31,7 @@ ROUNDS = 6  # of choosing, each with what the readings chosen before say about t
 OFF = 0.4  # of the scale of what it may belong to: ink further off than this is not explained
 SAMPLES = 8  # or a few more points of a stretch that are compared with what was fitted
 TO_COMPLEX = np.array([1, 1j])
-STRAIN = 4.0  # nats for each square radian that the pen turned at junctions
+STRAIN = 6.0  # nats for each square radian at junctions: an end that lies on a line by chance, ln(page / pen)
 
 
 def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, height: float) -> list[Way]:
