@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.graph import SIGHT, End, Graph, bend, heading
 
-__all__ = ["CROSSING", "LONELY", "Branch", "Junction", "Pairs", "find_junctions", "turn_cost"]
+__all__ = ["LONELY", "Branch", "Junction", "Pairs", "find_junctions", "turn_cost"]
 
 Points = NDArray[np.float64]
 Pairs = list[tuple[int, int]]  # indices of a junction's branches

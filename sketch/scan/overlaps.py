@@ -13,13 +13,12 @@ from cmath import phase
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.graph import RING, SIGHT, Edge, Graph, Ink
-from sketch.scan.junctions import CROSSING
 from sketch.scan.outlines import SMOOTH, ends_cost
 from sketch.scan.ways import Way
 
@@ -41,6 +40,7 @@ LEFT = 25.0  # to leave a line over,
 SHARED = 60.0  # for two outlines that are the same in full, in part for a part,
 DENTED = 100.0  # for an outline that takes nothing of its hull's area
 PIVOT = 15.0  # that a ring is likelier over two bodies than elsewhere
+STRAIN = 6.0  # nats for each square radian of strain, as in `sketch.scan.settle`
 CLEAR = 1.0  # pen widths from a crossing where a line is clear of its ink
 BESIDE = 0.9  # pen widths: ink as near to an outline is its ink
 MOSTLY = 0.8  # of a stretch of ink must be
@@ -67,11 +67,11 @@ class _Face:
 class _Body:
     """A convex union: the way around it [pixels], the lines along that, and its cost by itself [nats].
 
-    outer: the half-edges around it.
+    strain: of the lines that would have to end at its corners [rad²].
     """
 
     points: Points
-    outer: list[int]
+    strain: float
     faces: frozenset[int]
     lines: frozenset[int]
     cost: float
@@ -93,8 +93,7 @@ def overlapping(graph: Graph, rings: list[Way], inked: list[Edge], pen: float) -
         chosen = _fewest(bodies, sheet.length, knot.pivots) if 1 < len(bodies) <= MOST_BODIES else []
         if len(chosen) > 1:
             stretches: Ink = {name: points for edge in inked for name, points in edge.ink.items()}
-            strains = [sheet.strain(bodies[k]) for k in chosen]
-            out += _ways([bodies[k].points for k in chosen], strains, stretches, pen)
+            out += _ways([bodies[k] for k in chosen], stretches, pen)
     return out
 
 
@@ -113,6 +112,7 @@ class _Sheet:
     def __init__(self, edges: list[Edge], rings: list[Points], pen: float) -> None:
         self._pen = pen
         self._way: dict[int, Points] = {}
+        self._cut: dict[tuple[int, ...], float] = {}
         self.length: dict[int, float] = {}
         leaving: dict[int, list[tuple[float, int]]] = {}
         for e, edge in enumerate(edges):
@@ -122,7 +122,7 @@ class _Sheet:
                 self._way[h] = way = edge.points[::-1] if side else edge.points
                 dx, dy = way[min(max(round(pen), 2), len(way) - 1)] - way[0]
                 leaving.setdefault(edge.ends[side], []).append((float(np.arctan2(dy, dx)), h))
-        self._leaving = {h: [other for _, other in around] for around in leaving.values() for _, h in around}
+        self._around = {h: [other for _, other in around] for around in leaving.values() for _, h in around}
         self._next: dict[int, int] = {}
         for around in leaving.values():
             around.sort()
@@ -263,44 +263,48 @@ class _Sheet:
             if (area := abs(_area(points))) > most:
                 outer, around, most = loop, points, area
         lines = frozenset(h >> 1 for h in outer if self.length[h >> 1] > SHORT * self._pen)
-        return _Body(np.concatenate([around, around[:1]]), outer, counting, lines, cost)
+        strain = self._strain(outer)
+        return _Body(np.concatenate([around, around[:1]]), strain, counting, lines, cost + STRAIN * strain)
 
-    def strain(self, body: _Body) -> float:
+    def _strain(self, outer: list[int]) -> float:
         """What it costs that an outline turns where lines go straight on that then have to end there [rad²]."""
-        around = body.points[:-1]
-        steps = np.hypot(*np.diff(body.points, axis=0).T)
-        starts = np.cumsum([0, *(len(self._way[h]) - 1 for h in body.outer[:-1])])
-        along = np.concatenate([[0.0], np.cumsum(steps)])
-        mine = {h >> 1 for h in body.outer}
+        long = [k for k, h in enumerate(outer) if self.length[h >> 1] > SHORT * self._pen]
         total = 0.0
-        crossings: list[list[int]] = []
-        for k, at in enumerate(starts):
-            if crossings and along[at] - along[starts[crossings[-1][-1]]] < CROSSING * self._pen:
-                crossings[-1].append(k)
-            else:
-                crossings.append([k])
-        for crossing in crossings:
-            first, last = starts[crossing[0]], starts[crossing[-1]]
-            back = _leaving(np.roll(around[::-1], first + 1, axis=0), self._pen)
-            ahead = _leaving(np.roll(around, -last, axis=0), self._pen)
-            others = [
-                _leaving(self._way[h], self._pen)
-                for k in crossing
-                for h in self._leaving[body.outer[k]]
-                if h >> 1 not in mine and self.length[h >> 1] > SHORT * self._pen
-            ]
-            if others and (turn := _turn(back, ahead)) > SMOOTH:
-                ends = sum(
-                    min(_turn(here, other) for other in others) < min(turn, SMOOTH) for here in (back, ahead)
-                )
-                total += ends_cost(ends)
+        for k, after in pairwise([*long, long[0] + len(outer)] if long else []):
+            corner = tuple(outer[n % len(outer)] for n in range(k, after + 1))
+            if corner not in self._cut:
+                self._cut[corner] = self._cut_at(corner)
+            total += self._cut[corner]
         return total
 
+    def _cut_at(self, corner: tuple[int, ...]) -> float:
+        """The same for one corner. corner: the half-edges that lead around it, the first and the last being long."""
+        back, ahead = self._leaving(corner[0] ^ 1), self._leaving(corner[-1])
+        turn = _turn(back, ahead)
+        if turn <= SMOOTH:
+            return 0.0
+        own = {h >> 1 for h in corner}
+        # of two lines that part hardly further than the pen is wide, either goes straight on
+        along = self._thin_beside(corner[0]) | self._thin_beside(corner[-1])
+        others = [
+            self._leaving(other)
+            for h in corner[1:]
+            for other in self._around[h]
+            if other >> 1 not in own and self.length[other >> 1] > SHORT * self._pen
+            if along.isdisjoint(self._thin_beside(other))
+        ]
+        ends = [min((_turn(here, other) for other in others), default=turn) for here in (back, ahead)]
+        return ends_cost(sum(end < SMOOTH for end in ends))
 
-def _leaving(way: Points, pen: float) -> complex:
-    """The direction in which a line leaves a crossing, clear of its ink."""
-    near, far = (min(round(reach * pen), len(way) - 1) for reach in (CLEAR, SIGHT))
-    return complex(*(way[far] - way[min(near, far // 2)]).tolist())
+    def _thin_beside(self, h: int) -> set[int]:
+        """The thin faces beside an edge."""
+        return {f for f in (self.face[h], self.face[h ^ 1]) if f >= 0 and self._is_thin(self.faces[f])}
+
+    def _leaving(self, h: int) -> complex:
+        """The direction in which a half-edge leaves its node, clear of the ink there."""
+        way = self._way[h]
+        near, far = (min(round(reach * self._pen), len(way) - 1) for reach in (CLEAR, SIGHT))
+        return complex(*(way[far] - way[min(near, far // 2)]).tolist())
 
 
 def _turn(a: complex, b: complex) -> float:
@@ -368,11 +372,12 @@ def _fewest(bodies: list[_Body], length: dict[int, float], pivots: list[int]) ->
         chosen = found
 
 
-def _ways(outlines: list[Points], strains: list[float], stretches: Ink, pen: float) -> list[Way]:
-    """Ways along outlines [pixels] that overlap: each with its share of the ink, and with all of it.
+def _ways(bodies: list[_Body], stretches: Ink, pen: float) -> list[Way]:
+    """Ways along the outlines of bodies that overlap: each with its share of the ink, and with all of it.
 
-    strains: of each [rad²].  stretches: of the skeleton [pixels], by name.
+    stretches: of the skeleton [pixels], by name.
     """
+    outlines = [body.points for body in bodies]
     near = [_beside(outline, stretches, pen) for outline in outlines]
     mine: list[list[int]] = [[] for _ in outlines]
     had = [0.0 for _ in outlines]
@@ -384,8 +389,8 @@ def _ways(outlines: list[Points], strains: list[float], stretches: Ink, pen: flo
             mine[k].append(name)
             had[k] += len(stretches[name])
     return [
-        Way(points, {name: stretches[name] for name in sorted(names)}, strain)
-        for points, strain, along, own in zip(outlines, strains, near, mine, strict=True)
+        Way(body.points, {name: stretches[name] for name in sorted(names)}, body.strain)
+        for body, along, own in zip(bodies, near, mine, strict=True)
         for names in dict.fromkeys((along, frozenset(own)))
         if names
     ]

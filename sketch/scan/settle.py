@@ -31,16 +31,25 @@ ROUNDS = 6  # of choosing, each with what the readings chosen before say about t
 OFF = 0.4  # of the scale of what it may belong to: ink further off than this is not explained
 SAMPLES = 8  # or a few more points of a stretch that are compared with what was fitted
 TO_COMPLEX = np.array([1, 1j])
+AHEAD = 30.0  # nats for bodies that overlap, at first: what a pivot over them says is told only once they are chosen
 STRAIN = 6.0  # nats for each square radian at junctions: an end that lies on a line by chance, ln(page / pen)
 
 
-def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, height: float) -> list[Way]:
+def settle(
+    likeliest: list[Way],
+    others: list[Way],
+    overlaps: list[Way],
+    pen: float,
+    width: float,
+    height: float,
+) -> list[Way]:
     """The ways that belong to the best readings of all; ink of the others is left over.
 
-    likeliest: disjoint ways that take all the ink.  others: further ways over the same ink.  pen: its width, and
-    width, height: the picture's, in the pixels of the ways.
+    likeliest: disjoint ways that take all the ink.  others: further ways over the same ink.  overlaps: likewise, along
+    bodies that overlap at pivots.  pen: its width, and width, height: the picture's, in the pixels of the ways.
     """
-    ways = likeliest + others
+    ways = likeliest + others + overlaps
+    first = len(likeliest) + len(others)
     ink = [way.ink for way in ways]
     proposals = Proposals(math.hypot(width, height), _rivals([names.keys() for names in ink]))
     proposals.add([way.points for way in ways])
@@ -85,19 +94,21 @@ def settle(likeliest: list[Way], others: list[Way], pen: float, width: float, he
             taken.append(tuple(names))
             gains.append(gain)
     context, proposed = Context(), proposing(candidates, gains)
-    chosen, best, most = list[int](), list[int](), -np.inf
-    expected, told = np.array(gains), list[list[float]]()
-    for _ in range(ROUNDS):
-        live = np.flatnonzero(expected > 0).tolist()
-        packed = best_packing([taken[k] for k in live], expected[live].tolist())
-        last, chosen = chosen, [live[k] for k in packed]
-        if chosen == last:
-            break
-        told.append(context.gains([proposed], candidates, chosen, page.size))
-        if (total := sum(told[-1][k] for k in chosen)) > most:  # as they stand around one another
-            best, most = chosen, total
-        # of two sets each may speak for the other: what all of them say in the mean speaks for one
-        expected = np.mean(told, axis=0)
+    on_overlaps = np.array([all(page.pieces[i].stroke >= first for i in c.pieces) for c in candidates])
+    best, most = list[int](), -np.inf
+    for start in (gains, gains + AHEAD * on_overlaps) if on_overlaps.any() else (gains,):
+        expected, chosen, told = np.array(start), list[int](), list[list[float]]()
+        for _ in range(ROUNDS):
+            live = np.flatnonzero(expected > 0).tolist()
+            packed = best_packing([taken[k] for k in live], expected[live].tolist())
+            last, chosen = chosen, [live[k] for k in packed]
+            if chosen == last:
+                break
+            told.append(context.gains([proposed], candidates, chosen, page.size))
+            if (total := sum(told[-1][k] for k in chosen)) > most:  # as they stand around one another
+                best, most = chosen, total
+            # of two sets each may speak for the other: what all of them say in the mean speaks for one
+            expected = np.mean(told, axis=0)
     return [ways[page.pieces[i].stroke] for k in best for i in candidates[k].pieces]
 
 

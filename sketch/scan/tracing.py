@@ -142,11 +142,13 @@ def _strokes(seen: Traced) -> list[Points]:
             more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
             others += [_drawn(way, seen) for way in more]
     others += with_tails(likeliest + others, pen * seen.scale)
-    others += [_drawn(way, seen) for way in overlapping(drawn, found, graph.edges, pen)]
+    overlaps = [_drawn(way, seen) for way in overlapping(drawn, found, graph.edges, pen)]
     others += [_drawn(way, seen) for way in crossed(drawn, first, distance, pen)]
-    if others:
+    if others or overlaps:
         height, width = mask.shape
-        chosen = settle(likeliest, others, pen * seen.scale, width * seen.scale, height * seen.scale)
+        chosen = settle(
+            likeliest, others, overlaps, pen * seen.scale, width * seen.scale, height * seen.scale
+        )
         used = frozenset(name for way in chosen for name in way.ink)
         left = [ring for ring in rings if used.isdisjoint(ring.ink)]
         likeliest = chosen + [_drawn(way, seen) for way in ways.likeliest(without=used) + left]
