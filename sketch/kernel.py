@@ -32,6 +32,7 @@ __all__ = [
     "measure",
     "off_outline",
     "place",
+    "ring",
 ]
 
 Array = NDArray[np.float64]
@@ -63,6 +64,7 @@ _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, 
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
 _placed = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer, _int, _int)(("ink_placed", _lib))
+_ring = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer, _pointer)(("ink_ring", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 
 
@@ -350,6 +352,15 @@ def place(ink: Array, corners: Array, sides: int, rectangle: bool = False) -> Ar
     at = address(points)
     found = n > 1 and _placed(at, n, at + 16 * n, address(out), sides, rectangle)
     return out if found else None
+
+
+def ring(points: Array, length: float) -> tuple[Array, float] | None:
+    """A stroke of some length from where its ends cross on, and what of its length runs on beyond that [pixels]; None
+    where they do not cross (see core/closing.c)."""
+    out = np.empty((len(points) + 2, 2))
+    at = address(out)
+    count = _ring(address(points), len(points), length, at + 16, at)
+    return (out[1 : count + 1], float(out[0, 0])) if count else None
 
 
 def is_simple(outline: Array) -> bool:

@@ -10,10 +10,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline
+from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline, ring
 from sketch.loose import Chain
 from sketch.pieces import Page, Piece
-from sketch.scoring import PARAMETER, Fitted, misfit
+from sketch.scoring import FREE, PARAMETER, Fitted, misfit
 
 __all__ = ["LEAST_AXIS", "gone_over", "read_outline"]
 
@@ -34,6 +34,7 @@ COURSE = 32  # corners that it is drawn with
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.c
 SHARED = 10.0  # nats that an outline is rarer of which a side is another's
 GAP = 4.0  # nats for each observation that an outline lacks
+CLEAN = 30.0  # nats that hardly any outline is said in fewer
 CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
 LEAST_AXIS = 0.002  # of the page: thinner outlines are judged as if they were this thick
 
@@ -51,6 +52,32 @@ def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fi
     names = tuple(sorted(i for i, _ in chain))
     count = sum(pieces[i].observations for i in names)
     parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in chain]
+    out = _read(page, names, parts, count, over)
+    closed = ring(parts[0], pieces[names[0]].length) if len(chain) == 1 and over is None else None
+    if closed is None:
+        return out
+    # what runs on beyond where the ends cross is said freely
+    tails = count * closed[1] / pieces[names[0]].length
+    least = min(f.cost for f in out)
+    if FREE * tails + CLEAN >= least:
+        return out
+    other = _read(page, names, [closed[0]], count - tails, None, FREE * tails)
+    return other if min(f.cost for f in other) < least else out
+
+
+def _read(
+    page: Page,
+    names: tuple[int, ...],
+    parts: list[Array],
+    count: float,
+    over: Array | None,
+    beyond: float = 0.0,
+) -> list[Fitted]:
+    """The readings of ink that goes once around.
+
+    beyond: nats to say the ink of these pieces that does not.
+    """
+    pieces = page.pieces
     shared = 0.0
     if over is not None:
         parts.append(over)
@@ -58,7 +85,7 @@ def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fi
     fit = fit_closed(
         parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(pieces[i].unread for i in names)
     )
-    gaps = GAP * count * fit.gap / fit.ink + shared
+    gaps = GAP * count * fit.gap / fit.ink + shared + beyond
     (p, q), (r, s) = fit.back.tolist()
     scale, narrow = math.sqrt(abs(p * s - q * r)), min(math.hypot(p, r), math.hypot(q, s))
     fitted = partial(Fitted, pieces=names, scale=scale, narrow=narrow, gap=fit.gap / fit.ink)

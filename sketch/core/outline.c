@@ -60,6 +60,7 @@ static const double ROUNDED = 0.018; /* usual mean bow, times the root of the nu
 /* (tremor / bow)², while splitting: how much rather a side trembles than bows. Both are tried. */
 static const double STIFFNESS[2] = {0.02, 0.6};
 static const double FLAT = 0.8; /* a corner that turns by less [rad] may be a bow, */
+static const double EVEN = 0.66; /* or less than this share of what it would in an even polygon */
 static const double REFLEX = 1.2; /* likewise one that turns inward */
 static const double TIE = 1e-9; /* nats that no polygon is better by that was found again from another beginning */
 static const double INWARD = 4.0; /* nats that a corner which turns inward is rarer */
@@ -143,7 +144,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         share[q] = side[q].bow / fmax(length(b[0] - a[0], b[1] - a[1]), 1e-9);
         bows += share[q] / k;
     }
-    double odd = 0.5 * k * bows * bows / (ROUNDED * ROUNDED);
+    double odd = 0.5 * k * bows * bows / (ROUNDED * ROUNDED), bent = 1;
     for (int q = 0; q < k; q++) {
         const double *a = drawn + 2 * q, *b = drawn + 2 * ((q + 1) % k);
         double dx = b[0] - a[0], dy = b[1] - a[1], l = length(dx, dy), bow = side[q].bow;
@@ -160,7 +161,7 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
         double turn = atan2(dx * (c[1] - b[1]) - dy * (c[0] - b[0]), dx * (c[0] - b[0]) + dy * (c[1] - b[1]));
         int reflex = turn * area < 0;
         double usual = (share[q] - bows) / BOW, most = share[q] / BENT;
-        double flat = fmax((reflex ? REFLEX : FLAT) - fabs(turn), 0) / FLATNESS;
+        double flat = fmax((reflex ? REFLEX : fmin(FLAT, EVEN * 2 * PI / k)) - fabs(turn), 0) / FLATNESS;
         double brief = fmin(SHORT, 0.7 / k) - length(dx / stretch[0], dy / stretch[1]) / fmax(around, 1e-9);
         if (brief > 0) { /* what rounds a corner turns by as much as a corner does; the end of a wall turns back */
             const double *z = drawn + 2 * ((q + k - 1) % k);
@@ -169,10 +170,11 @@ static double fit_polygon(const Runs *r, const double *factor, int start, const 
             brief *= fmin(fmax((WALL - back) / 0.5, 0), 1) / SHORTNESS;
         } else
             brief = 0;
-        odd += 2.5 * log1p(0.25 * usual * usual) + 0.5 * (most * most + flat * flat + brief * brief);
+        bent *= 1 + 0.25 * usual * usual;
+        odd += 0.5 * (most * most + flat * flat + brief * brief);
         if (reflex) odd += INWARD;
     }
-    *oddness = odd;
+    *oddness = odd + 2.5 * log(bent);
     *perimeter = around;
     /* The frame makes a straight wall as wide as it is long; one that turns a corner stays thin in it. */
     double thick = fabs(area) / (THICK * fmax(around, 1e-9));

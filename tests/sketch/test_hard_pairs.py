@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -180,6 +181,15 @@ def test_hooks_and_overshoots_do_not_move_a_side() -> None:
         assert len(found.outline) == 4
         assert low == pytest.approx([250, 210], abs=12)
         assert high == pytest.approx([550, 390], abs=12)
+
+
+@pytest.mark.parametrize("back", [False, True])
+@pytest.mark.parametrize("past", [10.0, -8.0], ids=["crosses", "passes by"])
+def test_what_runs_on_within_a_closed_outline_is_no_side(past: float, back: bool) -> None:
+    corners = [(0.0, past), (0.0, 150.0), (240.0, 150.0), (240.0, 0.0), (-past, 0.0), (50.0, 45.0)]
+    at = np.array(turned(corners, 0.4, (300, 300)))
+    ink = np.concatenate([a + np.linspace(0, 1, 20)[:, None] * (b - a) for a, b in pairwise(at)])
+    assert kinds(read([ink[::-1] if back else ink])) == ["4-gon"]
 
 
 @hands
