@@ -28,11 +28,12 @@ int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance) {
     e->track = calloc(n, sizeof *e->track);
     e->island = calloc(n, sizeof *e->island);
     e->motion = malloc(n * sizeof *e->motion);
+    e->course = malloc(n * sizeof *e->course);
     e->acceleration = malloc(3 * n * sizeof *e->acceleration);
     e->root = malloc(n * sizeof *e->root);
     e->changed = calloc(n, sizeof *e->changed);
     e->fresh = calloc(n, sizeof *e->fresh);
-    if (!e->track || !e->island || !e->motion || !e->acceleration || !e->root) return SIM_OUT_OF_MEMORY;
+    if (!e->track || !e->island || !e->motion || !e->course || !e->acceleration || !e->root) return SIM_OUT_OF_MEMORY;
     if (!e->changed || !e->fresh) return SIM_OUT_OF_MEMORY;
     int status = system_create(&e->group, world);
     if (status == SIM_OK) status = system_create(&e->part, world);
@@ -50,6 +51,7 @@ void exact_destroy(Exact *e) {
     free(e->track);
     free(e->island);
     free(e->motion);
+    free(e->course);
     free(e->acceleration);
     free(e->root);
     free(e->changed);
@@ -97,13 +99,10 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     double to = fmin(e->horizon, fmin(ta->motion.end, tb->motion.end));
     if (a != 0) to = fmin(to, fmax(ta->touch_time, b != 0 ? tb->touch_time : 0)); /* later ones are asked for again */
     if (to <= from) return;
-    if (a != 0 && b != 0) { /* most pairs are too far apart to need a closer look */
+    if (a != 0 && b != 0) { /* most pairs do not come near enough to need a closer look */
         double reach = e->world->body[a].reach + e->world->body[b].reach + e->slack.gap;
-        double ways = motion_way(&ta->motion, from, to) + motion_way(&tb->motion, from, to);
-        Vec apart = vsub(motion_position(&ta->motion, from), motion_position(&tb->motion, from));
-        if (vdot(apart, apart) > (reach + ways) * (reach + ways)) return;
         e->spent += GLANCE;
-        if (motion_nearest(&ta->motion, &tb->motion, from, to) > reach) return;
+        if (course_nearest(&e->course[a], &e->course[b], to - from) > reach) return;
     }
     int32_t closed = closed_features(e, a, b);
     Mover ma = {a, &ta->motion}, mb = {b, &tb->motion};
@@ -121,8 +120,13 @@ static void find_touches(Exact *e, double from) {
     for (int32_t i = 1; i < n; i++)
         if (!e->changed[i] && is_tracked(e, i) && isfinite(e->track[i].touch_time) && e->changed[e->track[i].partner])
             e->changed[i] = true; /* its partner goes another way now: look at all its pairs again */
-    for (int32_t i = 1; i < n; i++)
-        if (e->changed[i]) e->track[i].touch_time = INFINITY;
+    bool any = false;
+    for (int32_t i = 1; i < n; i++) {
+        if (!e->changed[i]) continue;
+        e->track[i].touch_time = INFINITY;
+        any = true;
+    }
+    for (int32_t i = 1; any && i < n; i++) e->course[i] = motion_course(&e->track[i].motion, from);
     for (int32_t i = 1; i < n; i++) {
         if (!e->changed[i] || !is_tracked(e, i)) continue;
         find_touch(e, i, 0, from);
@@ -239,12 +243,12 @@ static bool is_over_budget(Exact *e, double time) {
 
 /* Everything that is about to touch something goes to the crowd. */
 static int hand_over_all(Exact *e, double time) {
-    int status = SIM_OK;
     e->world->profile.budget_spent += 1;
     system_clear(&e->group);
-    for (int32_t i = 1; i < e->world->body_count && status == SIM_OK; i++)
+    for (int32_t i = 1; i < e->world->body_count; i++)
         if (is_tracked(e, i) && e->world->body[i].mode != MODE_REST && e->track[i].touch_time < e->horizon)
-            status = group_gather(e, i, time);
+            group_add(e, i, time);
+    int status = group_spread(e, 0, time);
     group_send_to_crowd(e, time);
     return status;
 }
@@ -363,13 +367,24 @@ int exact_run(Exact *e, double from, double until, double *reached) {
     return status;
 }
 
-int exact_finish(Exact *e) {
+/* The first sample from which on nothing moves; after the last one if something goes on. */
+static int64_t first_still(const Exact *e) {
+    int64_t first = 1;
+    for (int32_t i = 0; i < e->world->body_count; i++) {
+        if (!is_tracked(e, i) || e->track[i].motion.degree > 0) return e->recorder->sample_count;
+        if (e->recorder->next[i] >= first) first = e->recorder->next[i] + 1;
+    }
+    return first;
+}
+
+void exact_finish(Exact *e) {
     enum { ABREAST = 4 }; /* samples written of a body before the next body's, which lie beside them */
-    for (int64_t k = 0; k < e->recorder->sample_count + ABREAST; k += ABREAST)
+    int64_t still = first_still(e);
+    for (int64_t k = 0; k < still + ABREAST; k += ABREAST)
         for (int32_t i = 0; i < e->world->body_count; i++)
             if (is_tracked(e, i) && e->recorder->next[i] < k)
                 record_motion(e->recorder, i, &e->track[i].motion, (double)k / e->recorder->fps);
-    return SIM_OK;
+    record_still(e->recorder, still);
 }
 
 /* ---------------------------------------------------------------- beside the crowd */

@@ -52,6 +52,7 @@ typedef struct Exact {
     ContactSolver solver;
     Smooth smooth;
     Motion *motion; /* of the part's members, from a step */
+    Course *course; /* of every body, from when its touches are looked for */
     double *acceleration;
     int32_t *root; /* union-find over the group */
     Vec *impulse;
@@ -81,7 +82,7 @@ int exact_take_back(Exact *exact, double time);
 int exact_run(Exact *exact, double from, double until, double *reached);
 
 /* Write what is left to be written: samples up to the end. */
-int exact_finish(Exact *exact);
+void exact_finish(Exact *exact);
 
 /* A tracked body's state. */
 State exact_state(const Exact *exact, int32_t body, double time);
@@ -95,8 +96,11 @@ int exact_after_crowd(Exact *exact, int32_t body, double from, double to);
 /* group.c: dissolve what holds the bodies of exact->group at `time`, resolve what happens, and set them on their way. */
 int group_reform(Exact *exact, double time);
 
-/* Put a body into the group with all that its motion hangs on: its island, its joints, what touches it. */
+/* Put a body into the group with all that its motion hangs on: its island, its joints, what touches it.  In two steps: bodies
+ * that are not in it, and then what the motion of its members hangs on, from one of them on. */
 int group_gather(Exact *exact, int32_t body, double time);
+void group_add(Exact *exact, int32_t body, double time);
+int group_spread(Exact *exact, int32_t first_member, double time);
 
 /* change.c: the contacts of the group's islands, to be called before those are dissolved; what is different now that the
  * contacts' modes are known; a body that came to rest. */

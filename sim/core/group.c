@@ -26,7 +26,7 @@ static int touching_pair(Exact *e, int32_t a, const State *sa, int32_t b, const 
     }
 }
 
-static void add_member(Exact *e, int32_t body, double time) {
+void group_add(Exact *e, int32_t body, double time) {
     Track *track = &e->track[body];
     record_motion(e->recorder, body, &track->motion, time);
     State state = motion_state(&track->motion, time);
@@ -42,10 +42,14 @@ static bool is_joined(const World *world, int32_t a, int32_t b) {
 }
 
 int group_gather(Exact *e, int32_t body, double time) {
+    int32_t first = e->group.count;
+    if (e->group.place_of[body] < 0) group_add(e, body, time);
+    return group_spread(e, first, time);
+}
+
+int group_spread(Exact *e, int32_t first, double time) {
     World *world = e->world;
-    int32_t head = e->group.count;
-    if (e->group.place_of[body] < 0) add_member(e, body, time);
-    for (; head < e->group.count; head++) {
+    for (int32_t head = first; head < e->group.count; head++) {
         int32_t i = e->group.member[head];
         for (int32_t j = 1; j < world->body_count; j++) {
             if (e->group.place_of[j] >= 0 || world->body[j].mode == MODE_CROWD) continue;
@@ -61,7 +65,7 @@ int group_gather(Exact *e, int32_t body, double time) {
                 if (status != SIM_OK) return status;
                 held = count > 0;
             }
-            if (held) add_member(e, j, time);
+            if (held) group_add(e, j, time);
         }
     }
     return SIM_OK;

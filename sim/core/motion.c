@@ -58,32 +58,22 @@ Vec motion_position(const Motion *m, double time) {
     return vec(horner(m->q[0], m->degree, x), horner(m->q[1], m->degree, x));
 }
 
-double motion_way(const Motion *m, double from, double to) {
-    if (m->degree == 0) return 0;
-    if (m->degree > 2) return m->speed * (to - from);
+Course motion_course(const Motion *m, double from) {
+    if (m->degree > 2) return (Course){.position = motion_position(m, from), .stray = m->speed};
     double x = (from - m->start) / m->span;
-    Vec v = vec(m->v[0][0] + m->v[0][1] * x, m->v[1][0] + m->v[1][1] * x), a = vec(m->v[0][1], m->v[1][1]);
-    return vlength(vmad(v, (to - from) / 2, a)) * (to - from) + vlength(a) * (to - from) * (to - from) / 8;
+    Vec fall = vec(m->v[0][1], m->v[1][1]);
+    return (Course){.position = motion_position(m, from),
+                    .velocity = vmad(vec(m->v[0][0], m->v[1][0]), x, fall),
+                    .fall = fall};
 }
 
-/* Where a body is, for a bound: a point that it strays from by `stray` at most; a flight's is on its chord. */
-static Vec position_about(const Motion *m, double from, double at, double *stray) {
-    if (m->degree <= 2) return motion_position(m, at);
-    *stray += m->speed * (at - from);
-    return motion_position(m, from);
-}
-
-double motion_nearest(const Motion *m, const Motion *n, double from, double to) {
-    double stray = 0, ignored;
-    Vec first = vsub(position_about(m, from, from, &ignored), position_about(n, from, from, &ignored));
-    Vec last = vsub(position_about(m, from, to, &stray), position_about(n, from, to, &stray));
-    Vec chord = vsub(last, first), bend = {0, 0};
-    if (m->degree <= 2) bend = vec(m->v[0][1], m->v[1][1]);
-    if (n->degree <= 2) bend = vsub(bend, vec(n->v[0][1], n->v[1][1]));
+double course_nearest(const Course *a, const Course *b, double time) {
+    Vec first = vsub(a->position, b->position), bend = vscale(vsub(a->fall, b->fall), 0.5 * time * time);
+    Vec chord = vmad(bend, time, vsub(a->velocity, b->velocity));
     double square = vdot(chord, chord), along = -vdot(first, chord);
     double share = along <= 0 ? 0 : along >= square ? 1 : along / square;
     /* a parabola strays from its chord by an eighth of its acceleration times the time squared */
-    return vlength(vmad(first, share, chord)) - vlength(bend) * (to - from) * (to - from) / 8 - stray;
+    return vlength(vmad(first, share, chord)) - 0.25 * vlength(bend) - (a->stray + b->stray) * time;
 }
 
 /* The largest |value|, |slope| and |curvature| of a polynomial for arguments in [0, x]: sums of the coefficients' sizes. */

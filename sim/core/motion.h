@@ -44,12 +44,16 @@ State motion_state(const Motion *motion, double time);
 State motion_acceleration(const Motion *motion, double time); /* in v and spin */
 Vec motion_position(const Motion *motion, double time);
 
-/* How far the body goes at most from one time to another [m]. */
-double motion_way(const Motion *motion, double from, double to);
+/* Where a body is and goes from some time on, as much of it as a first look at a pair asks. */
+typedef struct Course {
+    Vec position, velocity, fall; /* of rest and flight; fall: the acceleration */
+    double stray;                 /* of other motions, which are taken to stay: how fast they leave the place at most [m/s] */
+} Course;
 
-/* No less than so near do two bodies' centres come from one time to another [m]; two that fall alike go straight past each
- * other. */
-double motion_nearest(const Motion *m, const Motion *n, double from, double to);
+Course motion_course(const Motion *motion, double from);
+
+/* No less than so near do two bodies' centres come in so long [m]; two that fall alike go straight past each other. */
+double course_nearest(const Course *a, const Course *b, double time);
 MotionBound motion_bound(const Motion *motion, double from, double to);
 
 #endif

@@ -4,7 +4,11 @@
 #include <string.h>
 
 int recorder_create(Recorder *r, const World *world, const SimOptions *options, double *frames) {
-    *r = (Recorder){.world = world, .fps = options->fps, .sample_count = options->sample_count, .frames = frames};
+    *r = (Recorder){.world = world,
+                    .fps = options->fps,
+                    .sample_count = options->sample_count,
+                    .still = options->sample_count,
+                    .frames = frames};
     r->next = calloc((size_t)world->body_count, sizeof *r->next);
     return r->next ? SIM_OK : SIM_OUT_OF_MEMORY;
 }
@@ -62,6 +66,13 @@ void record_motion(Recorder *r, int32_t body, const Motion *motion, double time)
         }
     }
     r->next[body] = k;
+}
+
+void record_still(Recorder *r, int64_t from) {
+    size_t frame = 6 * (size_t)r->world->source_count;
+    r->still = from;
+    for (int64_t k = from; k < r->sample_count; k++)
+        memcpy(r->frames + frame * (size_t)k, r->frames + frame * (size_t)(k - 1), frame * sizeof *r->frames);
 }
 
 void record_state(Recorder *r, int32_t body, double time) {

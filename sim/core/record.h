@@ -9,6 +9,7 @@ typedef struct Recorder {
     const World *world;
     double fps;
     int64_t sample_count;
+    int64_t still;  /* from this sample on each is as the one before */
     double *frames; /* sample_count x sources x 6 */
     int64_t *next;  /* of every body: its first sample that is not written yet */
     SimEvent *event;
@@ -21,6 +22,9 @@ void recorder_destroy(Recorder *recorder);
 
 /* Write a body's samples before `time` from its motion. */
 void record_motion(Recorder *recorder, int32_t body, const Motion *motion, double time);
+
+/* Nothing moves any more: write the samples from one on (not the first) as that before it. */
+void record_still(Recorder *recorder, int64_t from);
 
 /* Write the samples of a body up to and at `time` from its present state, if one is due. */
 void record_state(Recorder *recorder, int32_t body, double time);

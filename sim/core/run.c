@@ -170,7 +170,8 @@ static int advance(Sim *sim, const SimOptions *options, double end) {
             status = advance_crowd(sim, options, &time);
         }
     }
-    return status == SIM_OK ? exact_finish(&sim->exact) : status;
+    if (status == SIM_OK) exact_finish(&sim->exact);
+    return status;
 }
 
 /* ---------------------------------------------------------------- the run */
@@ -178,13 +179,11 @@ static int advance(Sim *sim, const SimOptions *options, double end) {
 /* Kinetic and potential energy of every sample [J]; potential is 0 at the scene's origin. Returns whether all is finite. */
 static bool find_energy(const Sim *sim, int64_t samples, const double *frames, double *energy) {
     const World *world = &sim->world;
-    size_t frame = 6 * (size_t)world->source_count;
     double broken = 0; /* what is finite adds nothing to it */
     for (int64_t k = 0; k < samples; k++) {
         double kinetic = 0, potential = 0;
-        if (k > 0 && memcmp(frames, frames - frame, frame * sizeof *frames) == 0) { /* nothing moves */
+        if (k >= sim->recorder.still) {
             memcpy(energy + 3 * k, energy + 3 * (k - 1), 3 * sizeof *energy);
-            frames += frame;
             continue;
         }
         for (int32_t i = 0; i < world->source_count; i++, frames += 6) {
