@@ -106,7 +106,8 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     double reach = contact_reach(crowd, near->piece_a, near->piece_b);
     int32_t i = crowd->rows.count++;
     Contact *c = &crowd->rows.contact[i];
-    crowd->rows.ends[i] = (Ends){near->a, near->b, KIND_OPEN};
+    bool moves_a = crowd->mover[near->a].inverse_mass > 0, moves_b = crowd->mover[near->b].inverse_mass > 0;
+    crowd->rows.ends[i] = (Ends){near->a, near->b, KIND_OPEN, moves_a, moves_b};
     c->a = near->a;
     c->b = near->b;
     set_masses(c, &crowd->mover[near->a], &crowd->mover[near->b]);

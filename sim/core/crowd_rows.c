@@ -156,10 +156,13 @@ static inline void finish(Contact *c, Meeting *m, double tangent, double change,
     m->spin_b += c->inverse_moment_b * twist;
 }
 
+/* x, if it is more than 0; else 0.  What a processor cannot guess it shall not try to. */
+static inline double no_pull(double x) { return 0.5 * (x + fabs(x)); }
+
 /* All rows of a contact of one point. Returns the change of the point's velocity by its own impulse. */
 static inline double solve_one(Contact *c, Meeting *m) {
     double had = c->impulse_n[0];
-    double sum = larger(0, had - c->mass_n[0] * (point_speed(c, 0, m) - c->limit[0]));
+    double sum = no_pull(had - c->mass_n[0] * (point_speed(c, 0, m) - c->limit[0]));
     double change = sum - had;
     c->impulse_n[0] = sum;
     finish(c, m, tangent_speed(c, m) + change * c->cross[0], change, c->spin_na[0] * change, c->spin_nb[0] * change,
@@ -204,15 +207,6 @@ static double solve_in_turn(Contact *c, Meeting *m) {
     return larger(first, second);
 }
 
-static inline bool leave_noticed(Rows *rows, const Contact *c, const Meeting *m, Mover *mover, double change,
-                                 double dt) {
-    bool noticed = change * dt > c->fine;
-    leave(m, &mover[c->a], &mover[c->b]);
-    rows_heat(rows, mover, c->a, noticed);
-    rows_heat(rows, mover, c->b, noticed);
-    return noticed;
-}
-
 bool rows_solve(Rows *rows, Mover *mover, double dt, bool all) {
     bool *was = rows->was, *hot = rows->hot, heated = false;
     memcpy(was, hot, (size_t)rows->mover_count * sizeof *was);
@@ -223,11 +217,16 @@ bool rows_solve(Rows *rows, Mover *mover, double dt, bool all) {
         if (!(all | was[ends->a] | was[ends->b] | hot[ends->a] | hot[ends->b])) continue;
         if (ends->kind == KIND_OPEN) continue;
         Contact *c = &rows->contact[i];
-        Meeting m = meet(&mover[c->a], &mover[c->b]);
+        Mover *a = &mover[ends->a], *b = &mover[ends->b];
+        Meeting m = meet(a, b);
         double change = ends->kind == KIND_ONE    ? solve_one(c, &m)
                         : ends->kind == KIND_PAIR ? solve_pair(c, &m)
                                                   : solve_in_turn(c, &m);
-        heated |= leave_noticed(rows, c, &m, mover, change, dt);
+        leave(&m, a, b);
+        bool noticed = change * dt > c->fine;
+        hot[ends->a] |= noticed & ends->moves_a;
+        hot[ends->b] |= noticed & ends->moves_b;
+        heated |= noticed;
     }
     return heated;
 }

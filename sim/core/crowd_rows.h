@@ -33,7 +33,8 @@ typedef enum Kind {
 /* What every pass asks of a contact, apart from what it solves it by: few cache lines hold it for all of them. */
 typedef struct Ends {
     int32_t a, b; /* movers */
-    int32_t kind;
+    uint8_t kind;
+    bool moves_a, moves_b; /* the two have finite masses */
 } Ends;
 
 /* What the passes read comes first: it is what the cache holds.  The points of a contact lie on one line, along which they
