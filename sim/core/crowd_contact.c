@@ -37,7 +37,9 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
     c->count = m->count;
     c->normal = m->normal;
     c->side = m->side;
-    c->turned = b->turned - a->turned;
+    c->turns_a = radius_a == 0;
+    c->turns_b = radius_b == 0;
+    c->turned = c->turns_b * b->turned - c->turns_a * a->turned;
     c->moved = vsub(b->moved, a->moved);
     c->impulse_t = c->pair_mass = 0;
     c->slide_a = c->side > 0;
@@ -100,7 +102,7 @@ static void set_masses(Contact *c, const Mover *a, const Mover *b) {
 }
 
 void contact_add(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
-    static const double SLACK = 0.05, SLOP = 0.005, FINE = 3e-3, ROLLING = 1e-2;
+    static const double SLACK = 0.05, SLOP = 0.005, FINE = 3e-3, ROLLING = 2e-2;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
     const Shape *sb = &world->shape[world->piece[near->piece_b].shape];
     double reach = contact_reach(crowd, near->piece_a, near->piece_b);

@@ -79,7 +79,7 @@ void gap_close(Rows *rows, Mover *mover, double dt) {
         Mover *a = &mover[c->a], *b = &mover[c->b];
         Two gap = gap_between(c, a, b), depth = -gap - both(c->slop);
         Vec shifted = vsub(vsub(b->moved, a->moved), c->moved);
-        double turned = b->turned - a->turned - c->turned;
+        double turned = c->turns_b * b->turned - c->turns_a * a->turned - c->turned;
         rows->stale[rows->stale_count] = i;
         rows->stale_count += (fabs(turned) >= TURN) | (fabs(shifted.x) + fabs(shifted.y) >= c->slack);
         set_limit(c, gap, inverse_dt);

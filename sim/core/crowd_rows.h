@@ -65,7 +65,8 @@ typedef struct Contact {
     double slide_a, slide_b;
     double slop; /* overlap that is left alone, so that resting contacts do not come and go [m] */
     double slack; /* how far the pair may shift before its points are found anew [m] */
-    double turned; /* of b against a when the points were found, in this frame */
+    double turns_a, turns_b; /* 1; 0 of what is round: it touches where it did however it turns */
+    double turned; /* of b against a when the points were found, in this frame, as far as it matters */
     Vec moved; /* likewise */
     double elasticity;
     uint64_t key; /* the pieces */

@@ -101,6 +101,7 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     if (to <= from) return;
     if (a != 0 && b != 0) { /* most pairs do not come near enough to need a closer look */
         double reach = e->world->body[a].reach + e->world->body[b].reach + e->slack.gap;
+        if (course_apart(&e->course[a], &e->course[b], to - from, reach)) return;
         e->spent += GLANCE;
         if (course_nearest(&e->course[a], &e->course[b], to - from) > reach) return;
     }

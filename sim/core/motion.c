@@ -59,12 +59,16 @@ Vec motion_position(const Motion *m, double time) {
 }
 
 Course motion_course(const Motion *m, double from) {
-    if (m->degree > 2) return (Course){.position = motion_position(m, from), .stray = m->speed};
+    if (m->degree > 2) return (Course){.position = motion_position(m, from), .speed = m->speed, .stray = m->speed};
     double x = (from - m->start) / m->span;
-    Vec fall = vec(m->v[0][1], m->v[1][1]);
-    return (Course){.position = motion_position(m, from),
-                    .velocity = vmad(vec(m->v[0][0], m->v[1][0]), x, fall),
-                    .fall = fall};
+    Vec fall = vec(m->v[0][1], m->v[1][1]), velocity = vmad(vec(m->v[0][0], m->v[1][0]), x, fall);
+    return (Course){motion_position(m, from), velocity, fall, vlength(velocity), vlength(fall), 0};
+}
+
+bool course_apart(const Course *a, const Course *b, double time, double reach) {
+    Vec apart = vsub(a->position, b->position);
+    double way = reach + (a->speed + b->speed) * time + (a->pull + b->pull) * 0.5 * time * time;
+    return vdot(apart, apart) > way * way;
 }
 
 double course_nearest(const Course *a, const Course *b, double time) {

@@ -47,10 +47,14 @@ Vec motion_position(const Motion *motion, double time);
 /* Where a body is and goes from some time on, as much of it as a first look at a pair asks. */
 typedef struct Course {
     Vec position, velocity, fall; /* of rest and flight; fall: the acceleration */
-    double stray;                 /* of other motions, which are taken to stay: how fast they leave the place at most [m/s] */
+    double speed, pull;           /* the sizes of the two */
+    double stray; /* of other motions, which are taken to stay: how fast they leave the place at most [m/s] */
 } Course;
 
 Course motion_course(const Motion *motion, double from);
+
+/* Whether two bodies are too far apart to meet in so long however they go. */
+bool course_apart(const Course *a, const Course *b, double time, double reach);
 
 /* No less than so near do two bodies' centres come in so long [m]; two that fall alike go straight past each other. */
 double course_nearest(const Course *a, const Course *b, double time);

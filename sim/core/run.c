@@ -12,6 +12,7 @@ struct Sim {
     Recorder recorder;
     Crowd *crowd; /* made when the first body needs it */
     bool *entering;
+    bool *joined; /* by body: it hangs on a joint */
     double *source_mass, *source_moment; /* of the inputs that move; 0 for those that do not */
 };
 
@@ -30,10 +31,14 @@ Sim *sim_create(const SimInput *input) {
     sim->source_mass = malloc((n + 1) * sizeof(double));
     sim->source_moment = malloc((n + 1) * sizeof(double));
     sim->entering = calloc(n + 1, sizeof(bool));
-    if (!sim->source_mass || !sim->source_moment || !sim->entering || world_create(&sim->world, input) != SIM_OK) {
+    sim->joined = calloc(n + 1, sizeof(bool));
+    if (!sim->source_mass || !sim->source_moment || !sim->entering || !sim->joined ||
+        world_create(&sim->world, input) != SIM_OK) {
         sim_destroy(sim);
         return NULL;
     }
+    for (int32_t j = 0; j < sim->world.joint_count; j++)
+        sim->joined[sim->world.joint[j].a] = sim->joined[sim->world.joint[j].b] = true;
     for (size_t i = 0; i < n; i++) {
         bool moves = sim->world.shape[sim->world.source_shape[i]].body != 0;
         sim->source_mass[i] = moves ? input->bodies[i].mass : 0;
@@ -51,6 +56,7 @@ void sim_destroy(Sim *sim) {
     free(sim->source_mass);
     free(sim->source_moment);
     free(sim->entering);
+    free(sim->joined);
     free(sim);
 }
 
@@ -64,7 +70,7 @@ void sim_events(const Sim *sim, SimEvent *out) {
 
 /* ---------------------------------------------------------------- the crowd beside the rest */
 
-#define FEW 16         /* bodies of a crowd that the exact way is asked for again */
+#define FEW 16 /* bodies of a crowd that the exact way is asked for again */
 #define FIRST_WAIT 0.1 /* before it is asked again [s]; doubled each time */
 
 static int32_t crowd_size(const World *world) {
@@ -87,12 +93,20 @@ static bool meets_crowd(const Sim *sim, int32_t body, double from, double to) {
     return false;
 }
 
-/* Whether the crowd is about to rest: all of it is so slow that rolling resistance ends its motion (crowd_contact.c), which
- * the exact way, where a ball rolls for ever, does not know. */
-static bool crowd_settles(const World *world) {
-    for (int32_t i = 1; i < world->body_count; i++)
-        if (world->body[i].mode == MODE_CROWD && !crowd_is_slow(world, i)) return false;
-    return true;
+/* Whether something in the crowd is about to rest: it is so slow that rolling resistance ends its motion (crowd_contact.c),
+ * which the exact way, where a ball rolls for ever, does not know.  What hangs on joints swings on, and what lies on it with
+ * it: then all has to be slow. */
+static bool crowd_settles(const Sim *sim) {
+    const World *world = &sim->world;
+    bool any = false, all = true, swings = false;
+    for (int32_t i = 1; i < world->body_count; i++) {
+        if (world->body[i].mode != MODE_CROWD) continue;
+        bool slow = crowd_is_slow(world, i);
+        any = any || slow;
+        all = all && slow;
+        swings = swings || sim->joined[i];
+    }
+    return swings ? all : any;
 }
 
 /* Bodies that come near the crowd within a step belong to it, and so do those that come near these. */
@@ -162,7 +176,7 @@ static int advance(Sim *sim, const SimOptions *options, double end) {
         if (crowd == 0) {
             status = exact_run(&sim->exact, time, nextafter(end, INFINITY), &time);
             again = time + wait;
-        } else if (crowd <= FEW && time >= again && !crowd_settles(&sim->world)) {
+        } else if (crowd <= FEW && time >= again && !crowd_settles(sim)) {
             status = exact_take_back(&sim->exact, time);
             wait *= 2;
             again = time + wait;
