@@ -73,9 +73,15 @@ void sim_events(const Sim *sim, SimEvent *out) {
 #define FEW 16 /* bodies of a crowd that the exact way is asked for again */
 #define FIRST_WAIT 0.1 /* before it is asked again [s]; doubled each time */
 
-static int32_t crowd_size(const World *world) {
+/* Its bodies, and those of them that hang on no joint. */
+static int32_t crowd_size(const Sim *sim, int32_t *loose) {
+    const World *world = &sim->world;
     int32_t count = 0;
-    for (int32_t i = 1; i < world->body_count; i++) count += world->body[i].mode == MODE_CROWD;
+    *loose = 0;
+    for (int32_t i = 1; i < world->body_count; i++) {
+        count += world->body[i].mode == MODE_CROWD;
+        *loose += world->body[i].mode == MODE_CROWD && !sim->joined[i];
+    }
     return count;
 }
 
@@ -170,13 +176,16 @@ static int advance_crowd(Sim *sim, const SimOptions *options, double *time) {
 
 static int advance(Sim *sim, const SimOptions *options, double end) {
     double time = 0, wait = FIRST_WAIT, again = INFINITY;
+    int32_t most =
+        0; /* loose bodies that the crowd has had since it was last empty: what is left of a pile ends in it */
     int status = exact_start(&sim->exact, 0);
     while (status == SIM_OK && time <= end) { /* what happens at the last sample's time belongs to it */
-        int32_t crowd = crowd_size(&sim->world);
+        int32_t loose, crowd = crowd_size(sim, &loose);
+        most = crowd == 0 ? 0 : loose > most ? loose : most;
         if (crowd == 0) {
             status = exact_run(&sim->exact, time, nextafter(end, INFINITY), &time);
             again = time + wait;
-        } else if (crowd <= FEW && time >= again && !crowd_settles(sim)) {
+        } else if (crowd <= FEW && most <= FEW && time >= again && !crowd_settles(sim)) {
             status = exact_take_back(&sim->exact, time);
             wait *= 2;
             again = time + wait;
