@@ -15,7 +15,8 @@ Points = NDArray[np.float64]
 
 CUT = 1.0  # pen widths to either side of a corner that thinning bends
 SIDE = 2.0  # pen widths of each side, beyond, that show where it leads
-SHARP = 1.0  # [rad] that a corner turns by at least
+SHARP = 0.6  # [rad] that a corner turns by at least: those of a hexagon by 1.05
+SHARPER = 2.0  # times that it turns more than its sides do on the same length: a small circle's would not
 STRAIGHT = 0.15  # pen widths that a side may be off a line
 INKED = 0.2  # pen widths that the corner must lie within the ink
 
@@ -70,6 +71,9 @@ def _sharpened(points: Points, distance: NDArray[Any], pen: float, cut: int, sid
             continue
         k = int(group[np.argmax(turn[group])])
         if k - cut - side < done or k + cut + side >= len(points):
+            continue
+        along = cut + side // 2
+        if turn[k] < SHARPER * (turn[k - along] + turn[k + along]) / 2:
             continue
         corner = _meeting(points[k - cut - side : k - cut + 1], points[k + cut : k + cut + side + 1], pen)
         if corner is None or np.hypot(*(corner - points[k])) > 2 * CUT * pen:
