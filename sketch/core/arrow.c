@@ -12,6 +12,7 @@ enum {
 /* A head is two barbs alike, at some 35 degrees, less than half as long as the shaft; the spreads of these. */
 static const double ALIKE = 0.35; /* of the logarithm of one barb over the other */
 static const double SIZE = 0.45, SIZES = 0.4; /* of the shaft, and of its logarithm */
+static const double BACK = 0.7, BEYOND = 1.5; /* of a barb: as near to the tip as ink comes back, as far as it may go before */
 static const double ANGLE = 0.6, ANGLES = 0.25; /* [rad] */
 
 typedef struct {
@@ -24,6 +25,19 @@ typedef struct {
     double off[MOST_STROKES]; /* of each stroke from the arrow */
 } Arrow;
 
+/* Whether the pen stops or turns back at a barb's end, sample `at` of a stroke's: from there it goes back toward the tip, to
+ * either side, or nowhere. A bow of the shaft is no barb, nor is a leg of something larger. */
+static int ends_there(const double *along, const double *across, int at, const double tip[2]) {
+    double far = hypot(along[at] - tip[0], across[at] - tip[1]);
+    for (int step = -1; step <= 1; step += 2)
+        for (int i = at + step; i >= 0 && i < SAMPLES; i += step) {
+            double d = hypot(along[i] - tip[0], across[i] - tip[1]);
+            if (d < BACK * far) break;
+            if (d > BEYOND * far) return 0;
+        }
+    return 1;
+}
+
 /* The arrow on `count` strokes; returns 0 where the ink has no head, a barb on each side that points back, or none that is
  * less than `most` nats unlike one. */
 static int fit_arrow(const double *samples, const double *length, const int32_t *names, int count, const double *tail,
@@ -35,7 +49,7 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
     uy /= l;
     double along[MOST_STROKES * SAMPLES], across[MOST_STROKES * SAMPLES]; /* the shaft */
     double reach = 0, left[2] = {0, 0}, right[2] = {0, 0};
-    int total = count * SAMPLES;
+    int total = count * SAMPLES, at_left = 0, at_right = 0;
     for (int k = 0; k < count; k++)
         for (int i = 0; i < SAMPLES; i++) {
             const double *p = samples + 2 * (SAMPLES * names[k] + i), x = p[0] - tail[0], y = p[1] - tail[1];
@@ -48,10 +62,12 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
         if (h > left[1]) {
             left[0] = s;
             left[1] = h;
+            at_left = i;
         }
         if (h < right[1]) {
             right[0] = s;
             right[1] = h;
+            at_right = i;
         }
     }
     double sum = 0, n = 0;
@@ -74,6 +90,10 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
     double spread[2] = {(angles[0] - ANGLE) / ANGLES, (angles[1] - ANGLE) / ANGLES};
     out->unlike = 0.5 * (alike * alike + size * size + (spread[0] * spread[0] + spread[1] * spread[1]));
     if (out->unlike > most) return 0;
+    for (int e = 0; e < 2; e++) {
+        int at = e ? at_right : at_left, first = at - at % SAMPLES;
+        if (!ends_there(along + first, across + first, at - first, tip)) return 0;
+    }
     ink[0] = ink[1] = ink[2] = 0;
     for (int k = 0; k < count; k++) off[k] = 0;
     for (int i = 0; i < total; i++) {
