@@ -20,7 +20,7 @@ Gaps = dict[tuple[Fitted, Fitted], tuple[float, Array]]  # of open lines: how wi
 
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
-NO_BODY = 30.0  # nats that an X away from every body is unlikely: it would mean nothing
+NO_BODY = 33.0  # nats that an X away from every body is unlikely: it would mean nothing
 ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on,
 LARGER = 2.0  # times as large as the X, at least: else it is a part of an asterisk
 ONE_ARROW = (

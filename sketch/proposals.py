@@ -30,6 +30,7 @@ __all__ = ["Box", "Proposals", "Proposed", "proposing"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
 CLOSED = 0.04  # of its ink, what is missing at most of an outline that needs no other ink
+MEANT = 4.0  # nats that a reading is to save: less would be luck, as so many are tried
 HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less than that for it
 
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
@@ -201,7 +202,7 @@ class Proposals:
                 for cross in fitted((names, "cross"), lambda n=names, m=most: _kept(read_cross(page, n, m))):  # type: ignore[misc]
                     out += [cross, *with_strays(page, cross, self.free)]
             out += self._arrows(p)
-        said = [(c, self._said(c.pieces) - c.cost) for c in out]
+        said = [(c, self._said(c.pieces) - c.cost - MEANT) for c in out]
         likely = [(c, gain) for c, gain in said if gain > -HOPELESS]
         return proposing([c for c, _ in likely], [gain for _, gain in likely], looked, fits)
 

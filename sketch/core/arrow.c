@@ -12,7 +12,8 @@ enum {
 /* A head is two barbs alike, at some 35 degrees, less than half as long as the shaft; the spreads of these. */
 static const double ALIKE = 0.35; /* of the logarithm of one barb over the other */
 static const double SIZE = 0.45, SIZES = 0.4; /* of the shaft, and of its logarithm */
-static const double BACK = 0.7, BEYOND = 1.5; /* of a barb: as near to the tip as ink comes back, as far as it may go before */
+static const double BACK = 0.7,
+                    BEYOND = 1.5; /* of a barb: how near to the tip ink comes back, how far it may go before */
 static const double ANGLE = 0.6, ANGLES = 0.25; /* [rad] */
 
 typedef struct {

@@ -67,7 +67,8 @@ def drawn(name: str, x: float, y: float, size: float, rng: np.random.Generator) 
 def test_foreign_ink_changes_nothing(name: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
     alone = page(drawn(name, 500, 300, 130, rng))
-    assert recognize(alone).scene.bodies == []
+    scene = recognize(alone).scene
+    assert (scene.bodies, scene.gravity) == ([], (0.0, 0.0))
     sketch = cart(HAND, rng)
     ink = drawn(name, 1080, 90, 100, rng)
     first = len(sketch.strokes)
