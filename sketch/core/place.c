@@ -12,12 +12,15 @@
 
 enum {
     EDGE = 96, /* samples of the hull */
-    PASSES = 4
+    PASSES = 16
 };
 static const double BEYOND = 15.0;  /* times as far out as half of the ink is off: what runs on past a corner, */
 static const double CLOSE = 0.05;  /* if it is off by more than this share of the outline's size */
 static const double MEDIAN = 0.01; /* of the outline's size: distances below count by their squares */
 static const double WITHIN = 0.4;  /* of a side has hull beyond it: less than half, as hands run past corners */
+static const double STILL = 2e-4; /* of the outline's size: what moves no farther is in its place */
+/* What lies over a corner is as near to either of its sides: it goes with the one that it is less beyond. */
+static const double BESIDE = 1e-6;
 static const double ASTRAY = 0.5;  /* of the outline's size: a corner that moves farther is no placing any more */
 
 typedef struct {
@@ -89,18 +92,20 @@ static void place_circle(const Edge *e, double circle[3]) {
         }
         solve(a, 3);
         for (int p = 0; p < 3; p++) circle[p] += a[p][3];
+        if (fabs(a[0][3]) + fabs(a[1][3]) + fabs(a[2][3]) < STILL * circle[2]) break;
     }
 }
 
 /* Moves and turns the sides of a polygon, of a rectangle all by one angle. Returns 0 where they do not meet any more. */
 static int place_sides(const Edge *e, double *v, int k, int rectangle, double size, double inward) {
     for (int pass = 0; pass < PASSES; pass++) {
-        double a[SIDES][5][6], all[5][6], u[SIDES][2], middle[SIDES][2], centre[2] = {0, 0}, next[2 * SIDES];
+        double a[SIDES][5][6], all[5][6], u[SIDES][2], length[SIDES], middle[SIDES][2], next[2 * SIDES];
+        double centre[2] = {0, 0}, moved = 0;
         memset(a, 0, sizeof a);
         memset(all, 0, sizeof all);
         for (int q = 0; q < k; q++) {
             const double *p = v + 2 * q, *z = v + 2 * ((q + 1) % k);
-            double l = fmax(hypot(z[0] - p[0], z[1] - p[1]), 1e-12);
+            double l = length[q] = fmax(hypot(z[0] - p[0], z[1] - p[1]), 1e-12);
             for (int c = 0; c < 2; c++) {
                 u[q][c] = (z[c] - p[c]) / l;
                 middle[q][c] = 0.5 * (p[c] + z[c]);
@@ -111,7 +116,9 @@ static int place_sides(const Edge *e, double *v, int k, int rectangle, double si
             double best = INFINITY;
             int q = 0;
             for (int s = 0; s < k; s++) {
-                double d = segment_distance2(e->x[i], e->y[i], v + 2 * s, v + 2 * ((s + 1) % k));
+                double x = e->x[i] - v[2 * s], y = e->y[i] - v[2 * s + 1], along = x * u[s][0] + y * u[s][1];
+                double over = along < 0 ? -along : along > length[s] ? along - length[s] : 0;
+                double off = y * u[s][0] - x * u[s][1], d = off * off + (1 + BESIDE) * over * over;
                 if (d < best) {
                     best = d;
                     q = s;
@@ -147,8 +154,10 @@ static int place_sides(const Edge *e, double *v, int k, int rectangle, double si
             double t = ((z[0] - p[0]) * f[1] - (z[1] - p[1]) * f[0]) / sine;
             next[2 * q] = p[0] + t * d[0];
             next[2 * q + 1] = p[1] + t * d[1];
+            moved = fmax(moved, fabs(next[2 * q] - v[2 * q]) + fabs(next[2 * q + 1] - v[2 * q + 1]));
         }
         memcpy(v, next, 2 * (size_t)k * sizeof *v);
+        if (moved < STILL * size) break;
     }
     return 1;
 }

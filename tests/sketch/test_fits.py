@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from pages import box, ngon, page
+from pages import box, ngon, page, read
 
 from sketch.kernel import depth, fit_closed, measure
 from sketch.pieces import page_of
@@ -106,3 +106,14 @@ def test_no_ink_gives_nan_or_a_crossing_polygon(seed: int) -> None:
             assert np.isfinite(result.vertices(k)).all()
     assert not math.isnan(result.circle_cost)
     assert not math.isnan(result.ellipse_cost)
+
+
+@pytest.mark.parametrize("name", ["quick", "shaky"])
+def test_a_body_lies_where_it_lies_whichever_way_it_was_drawn(name: str) -> None:
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        corners = box(400, 300, 240, 110, 0.3) if seed % 2 else ngon(3 + seed % 4, 400, 300, 110)
+        strokes = outline(corners, HANDS[name], rng)
+        forth, back = (read(ink).readings[0].outline for ink in (strokes, [s[::-1] for s in strokes]))
+        assert len(forth) == len(back)
+        assert nearest(back, [tuple(corner) for corner in forth]) < 0.03
