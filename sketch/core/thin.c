@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "rows.h"
+
 #define EXPORT __attribute__((visibility("default")))
 
 enum { INK = 1, LISTED = 2, GOING = 4 };
@@ -42,14 +44,17 @@ static int is_step(unsigned bits) {
     return (n & e & !s & !w & !sw) | (e & s & !n & !w & !nw) | (s & w & !n & !e & !ne) | (w & n & !e & !s & !se);
 }
 
+/* Make ink of what is not 0, and paper of the outermost rows and columns; returns how much ink there is. */
 static int32_t count_ink(uint8_t *mask, int width, int height) {
     int32_t count = 0;
-    for (int y = 0; y < height; y++) {
+    memset(mask, 0, (size_t)width);
+    memset(mask + (size_t)(height - 1) * width, 0, (size_t)width);
+    for (int y = 1; y < height - 1; y++) {
         uint8_t *row = mask + (size_t)y * width;
-        for (int x = 0; x < width; x++) {
-            const int inside = x > 0 && y > 0 && x < width - 1 && y < height - 1;
-            row[x] = inside && row[x] ? INK : 0;
-            count += row[x];
+        row[0] = row[width - 1] = 0;
+        for (int x = next_ink(row, 0, width); x < width; x = next_ink(row, x + 1, width)) {
+            row[x] = INK;
+            count++;
         }
     }
     return count;
@@ -59,14 +64,24 @@ static size_t list_border(uint8_t *mask, int width, int height, const int offset
     size_t count = 0;
     for (int y = 1; y < height - 1; y++) {
         uint8_t *row = mask + (size_t)y * width;
-        for (int x = 1; x < width - 1; x++) {
-            if (row[x] && neighbourhood(row + x, offset) != 255) {
+        for (int x = next_ink(row, 1, width); x < width; x = next_ink(row, x + 1, width)) {
+            if (neighbourhood(row + x, offset) != 255) {
                 row[x] |= LISTED;
                 list[count++] = (int32_t)(row + x - mask);
             }
         }
     }
     return count;
+}
+
+/* Take off all marks; returns how much ink is left. */
+static int32_t count_left(uint8_t *mask, int width, int height) {
+    int32_t left = 0;
+    for (int y = 1; y < height - 1; y++) {
+        uint8_t *row = mask + (size_t)y * width;
+        for (int x = next_ink(row, 0, width); x < width; x = next_ink(row, x + 1, width)) left += row[x] &= INK;
+    }
+    return left;
 }
 
 /* One subiteration over the listed pixels: those that go are cleared and the ink they lay bare is listed in
@@ -124,8 +139,7 @@ EXPORT int32_t ink_thin(uint8_t *mask, int32_t width, int32_t height) {
     }
     for (size_t i = 0; i < count; i++)
         if (is_step(neighbourhood(mask + list[i], offset))) mask[list[i]] = 0;
-    left = 0; /* not all that is left was ever listed: the middle of a block stays unseen */
-    for (int64_t i = 0; i < (int64_t)width * height; i++) left += mask[i] &= INK;
+    left = count_left(mask, width, height); /* not all was ever listed: the middle of a block stays unseen */
     free(list < next ? list : next);
     return left;
 }

@@ -2,6 +2,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "rows.h"
+
 #define EXPORT __attribute__((visibility("default")))
 
 /* List the pixels of each 8-connected piece of ink, piece after piece.
@@ -12,14 +14,16 @@
 EXPORT int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, int32_t *pixels, int32_t *start) {
     const int32_t offset[8] = {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1};
     int32_t pieces = 0, listed = 0;
+    start[0] = 0;
+    if (width < 3 || height < 3) return 0;
     uint8_t *left = calloc((size_t)width * height + 1, 1);
     if (!left) return -1;
     for (int32_t y = 1; y < height - 1; y++)
-        for (int32_t x = 1; x < width - 1; x++) left[(size_t)y * width + x] = mask[(size_t)y * width + x] != 0;
-    start[0] = 0;
+        memcpy(left + (size_t)y * width + 1, mask + (size_t)y * width + 1, (size_t)width - 2);
     for (int32_t y = 1; y < height - 1; y++) {
-        for (int32_t at = y * width + 1; at < (y + 1) * width - 1; at++) {
-            if (!left[at]) continue;
+        const uint8_t *row = left + (size_t)y * width;
+        for (int32_t x = next_ink(row, 1, width - 1); x < width - 1; x = next_ink(row, x + 1, width - 1)) {
+            const int32_t at = y * width + x;
             left[at] = 0;
             pixels[listed++] = at;
             /* what has been listed of this piece is its own queue */

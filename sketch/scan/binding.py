@@ -1,4 +1,4 @@
-"""The C core of scanning: thinning and tracing, through ctypes."""
+"""The C core of scanning: ink, thinning and tracing, through ctypes."""
 
 from __future__ import annotations
 
@@ -13,16 +13,21 @@ from numpy.typing import NDArray
 
 from sketch.library import library
 
-__all__ = ["Chains", "pieces", "thin", "trace"]
+__all__ = ["Chains", "crests", "distances", "pieces", "thin", "trace"]
 
 _MASK = np.ctypeslib.ndpointer(np.uint8, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
+_FLOATS = np.ctypeslib.ndpointer(np.float32, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
 _INTS = np.ctypeslib.ndpointer(np.int32, ndim=1, flags=("C_CONTIGUOUS", "WRITEABLE"))
 
 
 @functools.cache
 def _library() -> ctypes.CDLL:
     core = library()
-    int32 = ctypes.c_int32
+    int32, real = ctypes.c_int32, ctypes.c_float
+    core.ink_crests.argtypes = [_MASK, _MASK, int32, int32, int32, int32, real, real, _MASK]
+    core.ink_crests.restype = None
+    core.ink_distance.argtypes = [_MASK, int32, int32, _FLOATS]
+    core.ink_distance.restype = None
     core.ink_thin.argtypes = [_MASK, int32, int32]
     core.ink_thin.restype = int32
     core.ink_trace.argtypes = [_MASK, int32, int32, int32, *[_INTS] * 6]
@@ -30,6 +35,31 @@ def _library() -> ctypes.CDLL:
     core.ink_pieces.argtypes = [_MASK, int32, int32, _INTS, _INTS]
     core.ink_pieces.restype = int32
     return core
+
+
+def crests(
+    darkness: NDArray[Any], mask: NDArray[Any], faintest: float, reach: int, crest: float, beside: float
+) -> NDArray[np.uint8]:
+    """1 on the crests of lines that are darker than `faintest` and not in the mask, shape (h, w).
+
+    Across a crest, the next pixel has less than `crest` times its darkness, and within `reach` pixels to both
+    sides darkness falls below `beside` of it.
+    """
+    line = np.zeros(mask.shape, np.uint8)
+    height, width = mask.shape
+    _library().ink_crests(darkness, mask, width, height, int(faintest), reach, crest, beside, line)
+    return line
+
+
+def distances(mask: NDArray[Any]) -> NDArray[np.float32]:
+    """How far each pixel of ink is from the paper, 0 on paper [pixels], shape (h, w).
+
+    The outermost rows and columns count as paper.
+    """
+    distance = np.zeros(mask.shape, np.float32)
+    height, width = mask.shape
+    _library().ink_distance(mask, width, height, distance)
+    return distance
 
 
 def thin(mask: NDArray[Any]) -> tuple[NDArray[np.uint8], int]:

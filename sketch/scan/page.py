@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import pieces
+from sketch.scan.binding import crests, pieces
 from sketch.scan.ruling import FEWEST, drop_ruling
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
 Image = NDArray[Any]  # uint8
 
 LIGHT_PIXELS = 120_000  # light is looked at on a picture reduced to this many
+FEWER = 3  # of these a side one is enough for a mean or a median
 COARSER = 5  # of these a side make one where light is smoothed
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line
 FINGER_MARK = 0.08  # likewise, the largest shadow or nail that is seen of a finger on the sheet
@@ -80,8 +81,7 @@ def read_page(picture: Image) -> Page:
     grey = _darkest_channel(picture)
     height, width = grey.shape
     reduced = max(round((width * height / LIGHT_PIXELS) ** 0.5), 1)
-    size = (max(width // reduced, 1), max(height // reduced, 1))
-    colours = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+    colours = _reduced(picture, reduced)
     if _is_blackboard(_darkest_channel(colours)):
         grey = _darkest_channel(255 - picture)
         colours = 255 - colours
@@ -93,19 +93,43 @@ def read_page(picture: Image) -> Page:
         light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
     # where light changes at an edge its side is known to a small pixel only: taken as on the dark side
     light = cv2.blur(cv2.erode(light, np.ones((3, 3), np.uint8)), (3, 3))
-    light = _less_stains(light, small, reduced)
-    light = cv2.resize(light, (width, height), interpolation=cv2.INTER_LINEAR)
+    light = _enlarged(_less_stains(light, small, reduced), reduced, grey.shape, cv2.INTER_LINEAR)
     darkness = cv2.divide(cv2.subtract(light, grey), np.maximum(light, np.uint8(DIMMEST)), scale=255.0)
     if paper is not None:
         edge = cv2.dilate(255 - paper, np.ones((5, 5), np.uint8))
-        edge = cv2.resize(edge, (width, height), interpolation=cv2.INTER_NEAREST)
-        paper = cv2.resize(paper, (width, height), interpolation=cv2.INTER_NEAREST)
+        edge = _enlarged(edge, reduced, grey.shape, cv2.INTER_NEAREST)
+        paper = _enlarged(paper, reduced, grey.shape, cv2.INTER_NEAREST)
         darkness = cv2.min(darkness, paper)
     # a sheet may end so near the picture's edge that no table is seen beyond
     rim = MARGIN * reduced
     for strip in (darkness[:rim], darkness[-rim:], darkness[:, :rim], darkness[:, -rim:]):
         strip[...] = 0
-    return Page(darkness, _noise(darkness, paper), edge)
+    return Page(darkness, _noise(darkness, paper, reduced), edge)
+
+
+def _reduced(picture: Image, by: int) -> Image:
+    """The means of squares of `by` pixels a side; what is left over at the right and below is left out."""
+    import cv2
+
+    height, width = (side // by for side in picture.shape[:2])
+    if min(height, width) < 1:
+        return np.asarray(cv2.resize(picture, (max(width, 1), max(height, 1)), interpolation=cv2.INTER_AREA))
+    whole = picture[: height * by, : width * by]
+    return np.asarray(cv2.resize(whole, (width, height), interpolation=cv2.INTER_AREA))
+
+
+def _enlarged(image: Image, by: int, shape: tuple[int, ...], way: int) -> Image:
+    """The reverse of `_reduced`, to a picture of some shape."""
+    import cv2
+
+    height, width = shape
+    whole = cv2.resize(
+        image, (min(image.shape[1] * by, width), min(image.shape[0] * by, height)), interpolation=way
+    )
+    below, beside = height - whole.shape[0], width - whole.shape[1]
+    if not below and not beside:
+        return np.asarray(whole)
+    return np.asarray(cv2.copyMakeBorder(whole, 0, below, 0, beside, cv2.BORDER_REPLICATE))
 
 
 def _less_stains(light: Image, small: Image, reduced: int) -> Image:
@@ -147,7 +171,7 @@ def _is_blackboard(small: Image) -> bool:
     """Whether most of the picture is dark, and what is narrow on it is bright."""
     import cv2
 
-    if np.median(small) > DARK_BOARD:
+    if 2 * np.count_nonzero(small > DARK_BOARD) > small.size:
         return False
     kernel = np.ones((5, 5), np.uint8)
     bright = cv2.morphologyEx(small, cv2.MORPH_TOPHAT, kernel)
@@ -190,7 +214,7 @@ def _paper(colours: Image) -> tuple[Image | None, NDArray[Any]]:
     weight = _brightest_region(inner, bright).astype(np.float32)
     around = _continued(bright, weight)
     lit = bright >= TABLE * around
-    white = whiteness >= TINGE * np.median(whiteness[weight > 0])
+    white = whiteness >= TINGE * np.median(whiteness[::FEWER, ::FEWER][weight[::FEWER, ::FEWER] > 0])
     sheet = _brightest_region(inner & lit & white, bright)
     # what the sheet surrounds lies on it: a filled shape, a coin, a blot
     rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)
@@ -218,15 +242,18 @@ def _brightest_region(mask: Image, bright: Image) -> NDArray[np.bool_]:
     import cv2
 
     count, labels = cv2.connectedComponents(mask, connectivity=4)
-    light = np.bincount(labels.ravel(), bright.ravel(), minlength=count)
+    light = np.bincount(labels[::FEWER, ::FEWER].ravel(), bright[::FEWER, ::FEWER].ravel(), minlength=count)
     light[0] = -1
     return np.asarray(labels == int(np.argmax(light)))
 
 
-def _noise(darkness: Image, paper: Image | None) -> float:
+def _noise(darkness: Image, paper: Image | None, step: int) -> float:
+    """From one pixel in `step`, each way: there are many."""
     import cv2
 
-    histogram = np.asarray(cv2.calcHist([darkness], [0], paper, [256], [0, 256])).ravel()
+    some = np.ascontiguousarray(darkness[::step, ::step])
+    mask = None if paper is None else np.ascontiguousarray(paper[::step, ::step])
+    histogram = np.asarray(cv2.calcHist([some], [0], mask, [256], [0, 256])).ravel()
     # light is the brightest around, so that bare paper is darker by as much as it is uneven
     share = np.cumsum(histogram)
     return max(float(np.searchsorted(share, 0.6 * share[-1])) / 2, 1.0)
@@ -278,18 +305,7 @@ def _link_thin_lines(mask: Image, darkness: Image, faintest: float, reach: int) 
     Beside darker ink a thin line is less than half as dark as the darkest around, as the blurred edge of that
     ink is; but from a line darkness falls to both sides, and along an edge to one.
     """
-    width = mask.shape[1]
-    inside = slice(reach, -reach)
-    line = np.zeros_like(mask)
-    line[inside, inside] = (darkness > faintest)[inside, inside] & (mask == 0)[inside, inside]
-    at = np.flatnonzero(line)
-    flat = darkness.ravel()
-    line.ravel()[at] = 0
-    for across in (1, width, width + 1, width - 1):
-        crest = at[np.maximum(flat[at + across], flat[at - across]) < CREST * flat[at]]
-        steps = range(2, (reach if across in (1, width) else reach - 1) + 1)
-        sides = [np.minimum.reduce([flat[crest + way * k * across] for k in steps]) for way in (1, -1)]
-        line.ravel()[crest[np.maximum(*sides) < BESIDE * flat[crest]]] = 1
+    line = crests(darkness, mask, faintest, reach, CREST, BESIDE)
     found = _measure(line, None)
     mask |= found.without(line, (found.span < LEAST_LINK) & (_touched(found, mask) < 2))
 

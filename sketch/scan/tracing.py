@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import thin, trace
+from sketch.scan.binding import distances, thin, trace
 from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.crossed import crossed
 from sketch.scan.graph import Graph, build_graph
@@ -91,7 +91,7 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
     page = read_page(work)
     mask = ink_mask(page, NEARBY)
     skeleton, size = thin(mask)
-    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    distance = distances(mask)
     pen = _pen_width(mask, skeleton, distance) if size else 0.0
     return Traced([], scale, page, mask, skeleton, distance, pen)
 
@@ -116,7 +116,7 @@ def _strokes(seen: Traced) -> list[Points]:
     hollowed = hollow_fills(mask, distance, pen)
     if fill_grain(mask, pen) or hollowed:
         skeleton, size = thin(mask)
-        distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+        distance = distances(mask)
     else:
         skeleton &= mask
         size = cv2.countNonZero(skeleton)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sketch.scan.binding import pieces, thin, trace
+from sketch.scan.binding import crests, distances, pieces, thin, trace
 from sketch.scan.corners import sharpen_corners
 from sketch.scan.graph import build_graph
 from sketch.scan.ways import trace_strokes
@@ -220,3 +220,25 @@ def test_pieces_are_the_connected_components(mask: np.ndarray) -> None:
     assert len(start) == count - 1
     for a, b in pairwise([*start, len(pixels)]):
         assert len(set(labels.ravel()[pixels[a:b]])) == 1
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(masks)
+def test_distances_are_the_chamfer_distances(mask: np.ndarray) -> None:
+    """The paper around a picture is as near as the paper in it."""
+    inner = framed(mask)
+    expected = cv2.distanceTransform(inner, cv2.DIST_L2, 3)
+    np.testing.assert_allclose(distances(mask), expected, atol=1e-3)
+
+
+def test_a_thin_line_beside_a_dark_one_is_a_crest_and_the_dark_ones_edge_is_none() -> None:
+    darkness = np.zeros((40, 60), np.uint8)
+    darkness[:, 20:24] = 200
+    darkness[:, 28] = 70
+    darkness = cv2.GaussianBlur(darkness, (0, 0), 0.8)
+    mask = (darkness > 100).astype(np.uint8)
+    line = crests(darkness, mask, 20, 4, 1.2, 0.6)
+    inside = line[4:-4]
+    assert np.all(inside[:, 28] == 1)
+    assert not np.any(inside[:, :27])
+    assert np.count_nonzero(line) == np.count_nonzero(inside)

@@ -1,0 +1,24 @@
+/* Rows of a mask, most of which is bare paper. */
+#ifndef ROWS_H
+#define ROWS_H
+
+#include <stdint.h>
+#include <string.h>
+
+/* The first x from `x` on, below `end`, where a row is not 0; `end` where there is none.  Eight pixels are looked at
+ * together where all of them may be paper. */
+static inline int32_t next_ink(const uint8_t *row, int32_t x, int32_t end) {
+    while (x < end) {
+        uint64_t eight = 0;
+        if (x + 8 <= end) memcpy(&eight, row + x, 8);
+        if (x + 8 <= end && !eight)
+            x += 8;
+        else if (row[x])
+            return x;
+        else
+            x++;
+    }
+    return end;
+}
+
+#endif
