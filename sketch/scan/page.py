@@ -32,9 +32,15 @@ FINGER_MARK = 0.08  # likewise, the largest shadow or nail that is seen of a fin
 FINGER = 0.015  # likewise, for telling the paper from what lies on it
 TABLE = 0.5  # what is not as bright as this share of the paper is not paper
 TINGE = 0.75  # likewise, of the paper's whiteness: what is more coloured is not paper in a shadow
+EDGES = 9  # [pixels] of the reduced picture: edges of shadows are narrower
+INKED = 99.5  # percent of a sheet that is certainly not ink
+HALF = 0.5  # of the ink's contrast: what has more is a line,
+LINE = 0.2  # of the light: which takes as much away at least
+ACROSS = 3  # [pixels] of the reduced picture: a line that runs so far to either side of an edge crosses it
 DARK_BOARD = 110  # of 255
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
+GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
 STAIN = 0.006  # of the picture's size, to either side: what is wider is a stain or filled
@@ -213,14 +219,54 @@ def _paper(colours: Image) -> tuple[Image | None, NDArray[Any]]:
         return None, bright
     weight = _brightest_region(inner, bright).astype(np.float32)
     around = _continued(bright, weight)
+    for shade in _shadows(inner, weight > 0, bright, _darkest_channel(colours), whiteness):
+        near = cv2.dilate(shade, np.ones((EDGES, EDGES), np.uint8)) > 0
+        around = np.where(near, np.minimum(around, _continued(bright, shade.astype(np.float32))), around)
+        inner[near & (cv2.dilate(weight, np.ones((EDGES, EDGES), np.uint8)) > 0)] = 1
     lit = bright >= TABLE * around
     white = whiteness >= TINGE * np.median(whiteness[::FEWER, ::FEWER][weight[::FEWER, ::FEWER] > 0])
     sheet = _brightest_region(inner & lit & white, bright)
     # what the sheet surrounds lies on it: a filled shape, a coin, a blot
+    beyond = np.pad(_outside(sheet).astype(np.uint8), 1, constant_values=1)
+    return np.asarray(255 * (1 - cv2.dilate(beyond, square)[1:-1, 1:-1]), np.uint8), around
+
+
+def _outside(sheet: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """What is off the sheet, without what it surrounds."""
+    import cv2
+
     rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)
     _, labels = cv2.connectedComponents(rest, connectivity=4)
-    off = (labels == labels[0, 0]).astype(np.uint8)
-    return np.asarray(255 * (1 - cv2.dilate(off, square)[1:-1, 1:-1]), np.uint8), around
+    return np.asarray((labels == labels[0, 0])[1:-1, 1:-1])
+
+
+def _shadows(
+    inner: Image, sheet: NDArray[np.bool_], bright: Image, small: Image, whiteness: NDArray[Any]
+) -> list[Image]:
+    """The regions beside the sheet that are paper in a deep shadow: as white as it, and lines run into them.
+
+    Nobody draws from the sheet on to the table.
+    """
+    import cv2
+
+    contrast = 1 - small / np.maximum(bright, 1).astype(np.float32)
+    dark = contrast > max(HALF * np.percentile(contrast[sheet], INKED), LINE)
+    _, lines = cv2.connectedComponents(dark.astype(np.uint8), connectivity=8)
+    on_sheet = np.bincount(lines[sheet & dark], minlength=int(lines.max()) + 1) >= ACROSS
+    count, regions, stats, _ = cv2.connectedComponentsWithStats(inner, connectivity=4)
+    white = TINGE * np.median(whiteness[sheet])
+    off = _outside(sheet)  # what the sheet surrounds is filled, and no shadow
+    found = []
+    for k in range(1, count):
+        if stats[k, cv2.CC_STAT_AREA] < NOTABLE * inner.size:
+            continue
+        region = regions == k
+        if not off[region].any() or np.median(whiteness[region]) < white:
+            continue
+        there = np.bincount(lines[region & dark], minlength=len(on_sheet)) >= ACROSS
+        if np.any(on_sheet[1:] & there[1:]):
+            found.append(region.astype(np.uint8))
+    return found
 
 
 def _continued(values: NDArray[Any], weight: NDArray[np.float32]) -> NDArray[Any]:
@@ -268,9 +314,11 @@ def ink_mask(page: Page, reach: int) -> Image:
     """
     import cv2
 
-    darkness = page.darkness
-    half = cv2.dilate(darkness, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)) // 2
     floor = min(max(LEAST_CONTRAST, 5 * page.noise), 254)
+    darkness = page.darkness
+    if page.noise > GRAINY:
+        darkness = cv2.GaussianBlur(darkness, (3, 3), 0)
+    half = cv2.dilate(darkness, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)) // 2
     mask = np.asarray(darkness > np.maximum(half, np.uint8(floor)), np.uint8)
     size = (mask.shape[0] * mask.shape[1]) ** 0.5
     found = _measure(mask, page)

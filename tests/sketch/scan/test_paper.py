@@ -14,9 +14,6 @@ from tests.sketch.scan.paper import PAPERS, photographed
 
 PENDULUM, CART = 0, 1
 APART = 32  # shapes that do not touch, which may be filled
-WEAK = {
-    "deep hard shadow": "what has a third of the sheet's light is taken for the table beside it",
-}
 
 
 def drawing(name: str) -> tuple[int, Drawing]:
@@ -27,13 +24,7 @@ def drawing(name: str) -> tuple[int, Drawing]:
     return number, draw(number, 7, 20)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(n, marks=pytest.mark.xfail(reason=WEAK[n], strict=True)) if n in WEAK else n
-        for n in PAPERS
-    ],
-)
+@pytest.mark.parametrize("name", PAPERS)
 def test_a_drawing_is_read_on_every_paper(name: str) -> None:
     number, drawn = drawing(name)
     data, seen = photographed(drawn, PAPERS[name], np.random.default_rng([number, 1]))
