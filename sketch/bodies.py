@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import Body, Circle, Polygon, Rectangle
+from sketch import kernel
 from sketch.kernel import depth, is_simple
 from sketch.reading import Reading
 
@@ -104,14 +105,7 @@ def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float
 
 def touch(a: Drawn, b: Drawn, at: Array, radius: float) -> bool:
     """Whether two bodies overlap, or are less than `radius` apart, within some radii of a point."""
-    steps = np.linspace(0, 1, 64, endpoint=False)[:, None, None]
-    for one, other in ((a, b), (b, a)):
-        along = np.roll(one.outline, -1, axis=0) - one.outline
-        dense = (one.outline + steps * along).reshape(-1, 2)
-        close = dense[np.hypot(dense[:, 0] - at[0], dense[:, 1] - at[1]) < 5 * radius]
-        if any(other.depth(p) < radius for p in close):
-            return True
-    return False
+    return kernel.touch(a.outline, b.outline, (float(at[0]), float(at[1])), 5 * radius, radius)
 
 
 def _moments(corners: list[complex]) -> tuple[float, complex]:

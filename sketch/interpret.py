@@ -171,15 +171,22 @@ def _under(
     meet in it, if it is as small as a nail.
     """
     near = _near(circle, at, AROUND * radius, bodies)
-    off = {d: min(depth, _off_ink(sketch, d, at)) for depth, d in near}
     over = bool(near) and near[0][0] <= 0
-    first = near[0][1] if over else min(off, key=lambda d: off[d], default=None)
-    if first is None or off[first] > ON * radius:
-        return [], 0.0
-    others = [d for depth, d in near if d is not first and (depth < 0 or (over and off[d] < radius))]
+    if over:
+        (_, first), *rest = near
+        others = [d for depth, d in rest if depth < 0] or [
+            d for _, d in rest if _off_ink(sketch, d, at) < radius
+        ]
+        reach = NEAR * radius
+    else:
+        rest = [(depth, d) for depth, d in near if depth < NEAR * radius and radius < NAILS * d.size]
+        off = {d: min(depth, _off_ink(sketch, d, at)) for depth, d in rest} if len(rest) > 1 else {}
+        first = min(off, key=lambda d: off[d], default=circle)
+        if off.get(first, math.inf) > ON * radius:
+            return [], 0.0
+        others, reach = [], (1 + ON) * radius
     if not others:
-        reach = (NEAR if over else 1 + ON) * radius
-        others = [d for depth, d in near if d is not first and depth < reach and touch(first, d, at, radius)]
+        others = [d for depth, d in rest if d is not first and depth < reach and touch(first, d, at, radius)]
     if over and not others:
         others = _axle(first, circle, at, radius, bodies)
     under = [first, *others[:1]]

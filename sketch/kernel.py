@@ -33,6 +33,7 @@ __all__ = [
     "off_outline",
     "place",
     "ring",
+    "touch",
 ]
 
 Array = NDArray[np.float64]
@@ -65,6 +66,7 @@ _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
 _placed = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer, _int, _int)(("ink_placed", _lib))
 _ring = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer, _pointer)(("ink_ring", _lib))
+_touch = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _int, *[_double] * 4)(("ink_touch", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 
 
@@ -371,3 +373,8 @@ def is_simple(outline: Array) -> bool:
 def depth(x: float, y: float, outline: Array) -> float:
     """Distance of a point from a closed outline, (n, 2) [pixels]; negative inside."""
     return float(_depth(x, y, address(outline), len(outline)))
+
+
+def touch(one: Array, other: Array, at: Point, reach: float, near: float) -> bool:
+    """Whether two closed outlines, (n, 2), overlap or come nearer than `near` within `reach` of a point [pixels]."""
+    return bool(_touch(address(one), len(one), address(other), len(other), *at, reach, near))

@@ -52,3 +52,25 @@ INK_API double ink_depth(double x, double y, const double *outline, int32_t n) {
     }
     return within ? -sqrt(best) : sqrt(best);
 }
+
+enum { STEPS = 64 }; /* along a side, to look for where another outline is near */
+
+/* Whether a place of one outline, within `reach` of a point, is within another or nearer to it than `near`. */
+static int comes_near(const double *one, int32_t n, const double *other, int32_t m, double x, double y, double reach,
+                      double near) {
+    for (int q = 0; q < n; q++) {
+        const double *a = one + 2 * q, *b = one + 2 * ((q + 1) % n);
+        if (segment_distance2(x, y, a, b) >= reach * reach) continue;
+        for (int i = 0; i < STEPS; i++) {
+            double px = a[0] + i * (b[0] - a[0]) / STEPS, py = a[1] + i * (b[1] - a[1]) / STEPS;
+            if (hypot(px - x, py - y) < reach && ink_depth(px, py, other, m) < near) return 1;
+        }
+    }
+    return 0;
+}
+
+/* Whether two closed outlines, (n, 2) and (m, 2), overlap or come nearer than `near` within `reach` of a point [pixels]. */
+INK_API int32_t ink_touch(const double *one, int32_t n, const double *other, int32_t m, double x, double y,
+                          double reach, double near) {
+    return comes_near(one, n, other, m, x, y, reach, near) || comes_near(other, m, one, n, x, y, reach, near);
+}
