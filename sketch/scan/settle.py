@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.context import Context
+from sketch.kernel import depth
 from sketch.marks import RARE, RARE_ARROW
 from sketch.outlines import ARC, BOX, CORNER, ELLIPSE, FREEFORM, ROUND
 from sketch.proposals import Proposals, proposing
 from sketch.scan.graph import Ink
-from sketch.scan.ways import Way
+from sketch.scan.ways import SIDE, Way
 from sketch.scoring import PARAMETER, STRANGE, Fitted
 from sketch.search import best_packing
 
@@ -31,7 +32,7 @@ ROUNDS = 6  # of choosing, each with what the readings chosen before say about t
 OFF = 0.4  # of the scale of what it may belong to: ink further off than this is not explained
 SAMPLES = 8  # or a few more points of a stretch that are compared with what was fitted
 TO_COMPLEX = np.array([1, 1j])
-AHEAD = 30.0  # nats for bodies that overlap, at first: what a pivot over them says is told only once they are chosen
+AHEAD = 30.0  # nats for bodies that overlap, or have an X: what marks say of them is told only once they are chosen
 STRAIN = 6.0  # nats for each square radian at junctions: an end that lies on a line by chance, ln(page / pen)
 
 
@@ -63,9 +64,11 @@ def settle(
         scale.update((name, min(p.scale, scale.get(name, np.inf))) for name in stretches)
         if p.stroke < len(likeliest):
             count = max(sum(map(len, stretches.values())), 1)
-            free.update((name, p.unread / count * len(points)) for name, points in stretches.items())
+            alone = STRANGE if p.length > SIDE * pen else 0.0  # what is no side means nothing
+            freely = p.unread - STRANGE + alone
+            free.update((name, freely / count * len(points)) for name, points in stretches.items())
             fine.update((name, p.observations / count * len(points)) for name, points in stretches.items())
-            strange.update((name, STRANGE / count * len(points)) for name, points in stretches.items())
+            strange.update((name, alone / count * len(points)) for name, points in stretches.items())
     some = {name: points[:: len(points) // SAMPLES + 1] for names in ink for name, points in names.items()}
     candidates: list[Fitted] = []
     taken: list[tuple[int, ...]] = []
@@ -94,9 +97,12 @@ def settle(
             taken.append(tuple(names))
             gains.append(gain)
     context, proposed = Context(), proposing(candidates, gains)
-    on_overlaps = np.array([all(page.pieces[i].stroke >= first for i in c.pieces) for c in candidates])
+    likely = [all(page.pieces[i].stroke >= first for i in c.pieces) for c in candidates]
+    ahead = np.array(
+        [AHEAD * (told_on or c) for told_on, c in zip(likely, _around_crosses(candidates), strict=True)]
+    )
     best, most = list[int](), -np.inf
-    for start in (gains, gains + AHEAD * on_overlaps) if on_overlaps.any() else (gains,):
+    for start in (gains, gains + ahead) if ahead.any() else (gains,):
         expected, chosen, told = np.array(start), list[int](), list[list[float]]()
         for _ in range(ROUNDS):
             live = np.flatnonzero(expected > 0).tolist()
@@ -110,6 +116,25 @@ def settle(
             # of two sets each may speak for the other: what all of them say in the mean speaks for one
             expected = np.mean(told, axis=0)
     return [ways[page.pieces[i].stroke] for k in best for i in candidates[k].pieces]
+
+
+def _around_crosses(candidates: list[Fitted]) -> list[bool]:
+    """Which of the readings are bodies with an X in them."""
+    crosses = [c for c in candidates if c.kind == "cross"]
+    out = []
+    for body in candidates:
+        (x0, y0), (x1, y1) = body.outline.min(axis=0).tolist(), body.outline.max(axis=0).tolist()
+        out.append(
+            body.closed
+            and any(
+                x0 < x < x1
+                and y0 < y < y1
+                and depth(x, y, body.outline) < 0
+                and set(body.pieces).isdisjoint(c.pieces)
+                for c, (x, y) in ((c, c.middle) for c in crosses)
+            )
+        )
+    return out
 
 
 def _said(fitted: Fitted) -> float:

@@ -21,7 +21,7 @@ from sketch.scan.outlines import Choice, close_outlines
 from sketch.scan.strokes import Layout
 from sketch.scan.unlifted import unlifted
 
-__all__ = ["Way", "Ways", "trace_strokes"]
+__all__ = ["SIDE", "Way", "Ways", "trace_strokes"]
 
 Points = NDArray[np.float64]
 
