@@ -181,8 +181,10 @@ def _drop_overshoots(graph: Graph, pen: float) -> None:
         if not short or len(rest) != 2:
             continue
         longest = max(graph.edges[e].length for e in short)
-        # one tip at a fork is a corner's; two short arms may be a small cross's, whose others are not much longer
-        if min(graph.edges[e].length for e, _ in rest) > (1.2 if len(short) == 1 else 3.0) * longest:
+        # one tip at a fork is a corner's; two short arms may be a small cross's, whose others are not much longer, nor
+        # is the line that joins these, if any
+        far = 1.2 if len(short) == 1 else 3.0 if rest[0][0] != rest[1][0] else 6.0
+        if min(graph.edges[e].length for e, _ in rest) > far * longest:
             corner = _corner(graph, node, rest, pen)
             if corner is not None:
                 gone.update(short)

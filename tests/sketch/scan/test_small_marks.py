@@ -1,0 +1,72 @@
+"""Small marks under a wide pen, where ink closes over itself: Xs in one stroke, hairpins, the corners of hexagons."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+from test_tangles import BOX, circle, inked, kinds, read
+
+from sketch.scan.binding import thin, trace
+from sketch.scan.corners import sharpen_corners
+from sketch.scan.graph import Graph, build_graph
+
+Line = list[tuple[float, float]]
+
+
+def x_with_a_side(x: float, y: float, half: float, bow: float) -> Line:
+    """One stroke: a bar, a side that bows out by so much, the other bar."""
+    t = np.linspace(-1, 1, 9)[1:-1]
+    side = [(x + half + bow * float(1 - v * v), y + half * float(v)) for v in t]
+    return [(x - half, y + half), (x + half, y - half), *side, (x + half, y + half), (x - half, y - half)]
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+@pytest.mark.parametrize("half", [10, 12, 15])
+@pytest.mark.parametrize("bow", [0, 0.25])
+def test_a_small_x_in_one_stroke_anchors_its_box(pen: float, half: float, bow: float) -> None:
+    scene = read([BOX, x_with_a_side(250, 250, half, bow * half)], pen)
+    assert kinds(scene) == ["rectangle"]
+    assert scene.bodies[0].anchored
+    assert not scene.joints
+
+
+@pytest.mark.parametrize("pen", [2.5, 4.0, 5.5])
+def test_a_ring_in_a_box_is_no_x(pen: float) -> None:
+    scene = read([BOX, circle(250, 250, 12)], pen)
+    assert not scene.bodies[0].anchored
+
+
+@pytest.mark.parametrize(("pen", "back"), [(4.0, 8), (4.0, 14), (5.5, 8)])
+def test_an_arrow_whose_pen_came_back_beside_a_barb_is_one_arrow(pen: float, back: float) -> None:
+    arrow: Line = [(450, 60), (450, 250), (488, 165), (470 + back, 275), (415, 190)]
+    scene = read([BOX, arrow], pen)
+    assert kinds(scene) == ["rectangle"]
+    assert abs(np.arctan2(scene.gravity[0], -scene.gravity[1])) < 0.2
+
+
+def traced(lines: list[Line], pen: float, *, sharpened: bool = True) -> Graph:
+    mask = (inked(lines, pen) > 0.5).astype(np.uint8)
+    skeleton, size = thin(mask)
+    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    graph = build_graph(trace(skeleton, size), distance, pen)
+    if sharpened:
+        sharpen_corners(graph, distance, pen)
+    return graph
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+def test_the_corners_of_a_hexagon_are_where_its_sides_meet(pen: float) -> None:
+    turn = np.linspace(0, 2 * np.pi, 7) + 0.2
+    corners = [(250 + 60 * float(np.cos(a)), 200 + 60 * float(np.sin(a))) for a in turn]
+    (edge,) = traced([corners], pen).edges
+    for corner in corners:
+        assert np.hypot(*(edge.points - corner).T).min() < 1.0
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+@pytest.mark.parametrize("radius", [2.5, 4.0, 6.0])
+def test_a_small_circle_has_no_corners(pen: float, radius: float) -> None:
+    ring = [circle(250, 200, radius * pen)]
+    (as_thinned,), (edge,) = traced(ring, pen, sharpened=False).edges, traced(ring, pen).edges
+    assert {*map(tuple, edge.points)} == {*map(tuple, as_thinned.points)}
