@@ -13,7 +13,7 @@ enum {
 static const double ALIKE = 0.35; /* of the logarithm of one barb over the other */
 static const double SIZE = 0.45, SIZES = 0.4; /* of the shaft, and of its logarithm */
 static const double BACK = 0.7,
-                    BEYOND = 1.5; /* of a barb: how near to the tip ink comes back, how far it may go before */
+                    BEYOND = 1.3; /* of a barb: how near to the tip ink comes back, how far it may go before */
 static const double ANGLE = 0.6, ANGLES = 0.25; /* [rad] */
 
 typedef struct {
