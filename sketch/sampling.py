@@ -21,6 +21,7 @@ AGREE = 0.3  # of a step: as near as a corner lies that is reckoned from either 
 HAIRPIN, TIP = 1.9, 0.1  # where it turns by more [rad], and the two are further apart, it turns twice
 MEET = 0.4  # of a step: but where the two ways meet about a step on, it is one sharp corner
 SHORT = 0.72, 0.9  # of a step: a chord of such a length has a corner, and not two
+LEG = 0.15  # of a step: what is shorter does not say where the ink comes from
 TURN, SPIKE = 0.35, 2.7  # rad: what turns by less is no corner, and by more none that one side alone can tell
 
 
@@ -55,9 +56,19 @@ def _sharpened(points: Array) -> Array:
     if sum(full) < max(STEPS, len(chords) / 3) or min(lengths) <= 0:
         return points
     step = sum(d for d in lengths if d > FULL * step) / sum(d > FULL * step for d in lengths)
-    # where the ink comes from and goes on to at a point, as far as that is known: the other end of a straight leg
-    before = [at[k - 1] if k and full[k - 1] else None for k in range(len(at))]
-    behind = [at[k + 1] if k < len(chords) and full[k] else None for k in range(len(at))]
+    # where the ink comes from and goes on to at a point, as far as that is known: the other end of a straight leg,
+    # and not of one after or before which it turns where no corner was cut, as round ink does
+    bends = [
+        abs(cmath.phase(d * c.conjugate())) > TURN and p and q
+        for c, d, p, q in zip(chords, chords[1:], full, full[1:], strict=False)
+    ]
+    before = [
+        at[k - 1] if k and full[k - 1] and not (k > 1 and bends[k - 2]) else None for k in range(len(at))
+    ]
+    behind = [
+        at[k + 1] if k < len(chords) and full[k] and not (k < len(bends) and bends[k]) else None
+        for k in range(len(at))
+    ]
     corners: dict[int, tuple[complex, ...]] = {}
     for sides in (2, 2, 1, 1):  # first where both say the same
         for k in range(len(chords)):
@@ -66,11 +77,19 @@ def _sharpened(points: Array) -> Array:
             a, b = at[k], at[k + 1]
             found = _corners(before[k], a, b, behind[k + 1], step, sides)
             if found:
-                corners[k], before[k + 1], behind[k] = found, found[-1], found[0]
+                corners[k] = found
+                before[k + 1] = found[-1] if abs(b - found[-1]) > LEG * step else None
+                behind[k] = found[0] if abs(found[0] - a) > LEG * step else None
     for k, d in enumerate(
         lengths
     ):  # where neither says whence: halfway, to the side that the ink goes around
-        if 0 < k < len(chords) - 1 and k not in corners and SHORT[0] * step < d < SHORT[1] * step:
+        if (
+            0 < k < len(chords) - 1
+            and before[k] is None
+            and behind[k + 1] is None
+            and k not in corners
+            and SHORT[0] * step < d < SHORT[1] * step
+        ):
             turns = [(chords[j].conjugate() * chords[j + 1]).imag for j in (k - 1, k)]
             if turns[0] * turns[1] > 0:
                 off = math.sqrt(step * step - d * d) / 2
@@ -112,7 +131,8 @@ def _corners(
     if abs(found[0] - found[-1]) > AGREE * step:
         return ()
     turn = abs(cmath.phase((b - corner) * (corner - a).conjugate()))
-    return (corner,) if turn > TURN and (len(found) == 2 or turn < SPIKE) else ()
+    sure = len(found) == 2 or turn < SPIKE or min(abs(corner - a), abs(corner - b)) < LEG * step
+    return (corner,) if turn > TURN and sure else ()
 
 
 def _corner(before: complex | None, a: complex, b: complex, step: float) -> complex | None:
