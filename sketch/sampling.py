@@ -22,6 +22,7 @@ HAIRPIN, TIP = 1.9, 0.1  # where it turns by more [rad], and the two are further
 MEET = 0.4  # of a step: but where the two ways meet about a step on, it is one sharp corner
 SHORT = 0.72, 0.9  # of a step: a chord of such a length has a corner, and not two
 LEG = 0.15  # of a step: what is shorter does not say where the ink comes from
+LOOP = 4.0  # rad: what turns by more altogether goes around something, and has its corners outward
 TURN, SPIKE = 0.35, 2.7  # rad: what turns by less is no corner, and by more none that one side alone can tell
 
 
@@ -56,19 +57,9 @@ def _sharpened(points: Array) -> Array:
     if sum(full) < max(STEPS, len(chords) / 3) or min(lengths) <= 0:
         return points
     step = sum(d for d in lengths if d > FULL * step) / sum(d > FULL * step for d in lengths)
-    # where the ink comes from and goes on to at a point, as far as that is known: the other end of a straight leg,
-    # and not of one after or before which it turns where no corner was cut, as round ink does
-    bends = [
-        abs(cmath.phase(d * c.conjugate())) > TURN and p and q
-        for c, d, p, q in zip(chords, chords[1:], full, full[1:], strict=False)
-    ]
-    before = [
-        at[k - 1] if k and full[k - 1] and not (k > 1 and bends[k - 2]) else None for k in range(len(at))
-    ]
-    behind = [
-        at[k + 1] if k < len(chords) and full[k] and not (k < len(bends) and bends[k]) else None
-        for k in range(len(at))
-    ]
+    before, behind = _legs(at, chords, full)
+    around = sum(_turn(*three) for three in zip(at, at[1:], at[2:], strict=False))
+    inward = -math.copysign(1.0, around) if abs(around) > LOOP else 0.0
     corners: dict[int, tuple[complex, ...]] = {}
     for sides in (2, 2, 1, 1):  # first where both say the same
         for k in range(len(chords)):
@@ -76,7 +67,7 @@ def _sharpened(points: Array) -> Array:
                 continue
             a, b = at[k], at[k + 1]
             found = _corners(before[k], a, b, behind[k + 1], step, sides)
-            if found:
+            if found and not (len(found) == 1 and TURN < _turn(a, found[0], b) * inward < SPIKE):
                 corners[k] = found
                 before[k + 1] = found[-1] if abs(b - found[-1]) > LEG * step else None
                 behind[k] = found[0] if abs(found[0] - a) > LEG * step else None
@@ -100,6 +91,29 @@ def _sharpened(points: Array) -> Array:
         out.append(z)
         out += corners.get(k, ())
     return np.array([[z.real, z.imag] for z in out])
+
+
+def _legs(
+    at: list[complex], chords: list[complex], full: list[bool]
+) -> tuple[list[complex | None], list[complex | None]]:
+    """Where the ink comes from and goes on to at each point, as far as that is known: the other end of a straight leg.
+
+    A leg is none if it turns at its other end where no corner was cut: round ink does.
+    """
+    legs = len(chords)
+    bends = [
+        full[k] and full[k + 1] and abs(_turn(at[k], at[k + 1], at[k + 2])) > TURN for k in range(legs - 1)
+    ]
+    before = [
+        at[k - 1] if k and full[k - 1] and not (k > 1 and bends[k - 2]) else None for k in range(legs + 1)
+    ]
+    behind = [at[k + 1] if full[k] and not (k < legs - 1 and bends[k]) else None for k in range(legs)]
+    return before, [*behind, None]
+
+
+def _turn(a: complex, b: complex, c: complex) -> float:
+    """By how much the way from a to b turns there to c [rad]."""
+    return cmath.phase((c - b) * (b - a).conjugate())
 
 
 def _corners(
@@ -130,7 +144,7 @@ def _corners(
     corner = sum(found) / len(found)
     if abs(found[0] - found[-1]) > AGREE * step:
         return ()
-    turn = abs(cmath.phase((b - corner) * (corner - a).conjugate()))
+    turn = abs(_turn(a, corner, b))
     sure = len(found) == 2 or turn < SPIKE or min(abs(corner - a), abs(corner - b)) < LEG * step
     return (corner,) if turn > TURN and sure else ()
 

@@ -56,6 +56,13 @@ def test_ten_points_of_a_circle_are_a_circle(hand: str) -> None:
         assert kinds(read([in_steps(s, 10) for s in ring])) == ["circle"]
 
 
+def test_a_hook_bends_no_circle() -> None:
+    angle = np.linspace(0, 5.6, 10)
+    ring = np.column_stack([400 + 90 * np.cos(angle), 300 + 90 * np.sin(angle)])
+    ring[0] += 0.2 * (ring[1] - ring[0]) + (-8, 0)  # the pen went down a little within it
+    assert np.array_equal(sampled(ring), ring)
+
+
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(seed=st.integers(0, 10**6), count=st.integers(5, 24))
 def test_points_in_unequal_steps_stay_as_they_are(seed: int, count: int) -> None:
