@@ -142,6 +142,8 @@ static int begin(Crowd *crowd, World *world, double length, double h) {
     int status = touch_frame(crowd, world, length, h);
     if (status == SIM_OK) status = pivots_load(&crowd->pivots, world, crowd->mover);
     if (status != SIM_OK) return status;
+    for (int32_t i = 0; i < crowd->pivots.count; i++)
+        crowd->touched[crowd->pivots.pivot[i].a] = crowd->touched[crowd->pivots.pivot[i].b] = true;
     pivots_factor(&crowd->pivots, crowd->mover);
     gap_limit(crowd->rows.contact, crowd->rows.count, crowd->mover, h);
     for (int32_t i = 0; i < world->body_count; i++) crowd->part[i] = part_of(world, i);

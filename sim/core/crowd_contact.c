@@ -123,6 +123,7 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
                      : 0;
     c->twist_mass = c->rolling > 0 ? 1 / (c->inverse_moment_a + c->inverse_moment_b) : 0;
     c->key = pair_key(near->piece_a, near->piece_b);
+    crowd->touched[near->a] = crowd->touched[near->b] = true;
     c->touching = events_touching(crowd, world, c);
     contact_set_points(crowd, world, c, m, memory_recall(&crowd->memory, c->key));
 }

@@ -78,7 +78,7 @@ struct Crowd {
     int32_t *ring; /* by body: the next one that was put to rest with it */
     double *roused; /* by body: how hard it was woken in this frame [m/s], or 0 */
     bool *nudged; /* by body: to be woken when the frame is over */
-    bool *touched; /* by body: has a contact, a joint, or something near */
+    bool *touched; /* by body: has had a contact or a joint in the frame, or, when it ends, has something near */
 };
 
 /* An array of so many, and one more, zeroed. */

@@ -128,6 +128,7 @@ static void load(Crowd *crowd, const World *world) {
         *m = (Mover){0};
         if (body->mode != MODE_CROWD) continue;
         crowd->active[crowd->active_count++] = i;
+        crowd->touched[i] = false;
         m->velocity = body->velocity;
         m->spin = body->spin;
         m->inverse_mass = body->inverse_mass;
@@ -233,7 +234,8 @@ static int follow(Crowd *crowd, const World *world, int32_t body, double left) {
 
 static int follow_strays(Crowd *crowd, const World *world, double left, double dt) {
     for (int32_t k = 0; k < crowd->active_count; k++) {
-        if (!range_left(crowd, crowd->active[k], dt)) continue;
+        /* what nothing pushes keeps to its range */
+        if (!crowd->touched[crowd->active[k]] || !range_left(crowd, crowd->active[k], dt)) continue;
         int status = follow(crowd, world, crowd->active[k], left);
         if (status != SIM_OK) return status;
     }
@@ -272,24 +274,18 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     return SIM_OK;
 }
 
-/* Which bodies touch something, hang on something, or may meet something in another frame like this one. */
-static void find_touched(Crowd *crowd, double dt) {
-    bool *touched = crowd->touched;
-    for (int32_t k = 0; k < crowd->active_count; k++) touched[crowd->active[k]] = false;
-    for (int32_t i = 0; i < crowd->pivots.count; i++)
-        touched[crowd->pivots.pivot[i].a] = touched[crowd->pivots.pivot[i].b] = true;
-    for (int32_t i = 0; i < crowd->rows.count; i++)
-        touched[crowd->rows.ends[i].a] = touched[crowd->rows.ends[i].b] = true;
+/* Bodies that may meet something in another frame like this one count as touched. */
+static void find_near(Crowd *crowd, double dt) {
     for (int32_t i = 0; i < crowd->near_count; i++) {
         const Near *near = &crowd->near[i];
         if (near_gap(crowd, near) <= near_closing(crowd, near_rate(crowd, near), dt) + near_skin(crowd, near))
-            touched[near->a] = touched[near->b] = true;
+            crowd->touched[near->a] = crowd->touched[near->b] = true;
     }
 }
 
 /* At the end of a frame: who touches, and what is known of the gaps, for the next one. */
 int touch_finish(Crowd *crowd, double dt) {
-    find_touched(crowd, dt);
+    find_near(crowd, dt);
     if (index_room(&crowd->last_index, crowd->near_count + 1) != SIM_OK) return SIM_OUT_OF_MEMORY;
     index_clear(&crowd->last_index);
     for (int32_t i = 0; i < crowd->near_count; i++) {
