@@ -6,14 +6,30 @@
 static const double FRAME = 1.0 / 20;    /* [s]: contacts are found anew this often */
 static const double FAR = 0.25;          /* of a body's reach, in such a time */
 static const double MANY = 0.35;         /* of the bodies that move */
-static const double SUBSTEP = 1.0 / 240; /* [s] */
+static const double SUBSTEP = 1.0 / 240; /* [s]: the longest substep */
+static const double FALL = 1.0 / 24;     /* of the time in which a body falls by its own reach: likewise */
+static const double SHORTER = 1.0 / 16;  /* of the longest: the shortest */
 static const int32_t PASSES = 6;       /* between looks for new contacts, at most */
 static const int32_t LOOKS = 6;        /* of a substep, at most */
+
+/* The longest substep: what is strongly pulled, or small, does not go farther in it than others do for their size. */
+static double longest_substep(const World *world) {
+    double sum = 0, count = 0, gravity = vlength(world->gravity);
+    for (int32_t i = 1; i < world->body_count; i++) {
+        if (world->body[i].inverse_mass == 0) continue;
+        sum += world->body[i].reach;
+        count++;
+    }
+    if (count == 0 || gravity == 0) return SUBSTEP;
+    double fall = FALL * sqrt(2 * sum / count / gravity);
+    return smaller(SUBSTEP, larger(SHORTER * SUBSTEP, fall));
+}
 
 Crowd *crowd_create(const World *world, Recorder *recorder) {
     Crowd *crowd = calloc(1, sizeof *crowd);
     if (!crowd) return NULL;
     crowd->recorder = recorder;
+    crowd->longest_substep = longest_substep(world);
     crowd->body_count = world->body_count;
     crowd->shape_count = world->shape_count;
     crowd->piece_count = world->piece_count;
@@ -186,7 +202,7 @@ static int finish(Crowd *crowd, World *world, bool whole) {
 
 /* From `end` - dt on. */
 static int step(Crowd *crowd, World *world, double dt, double end) {
-    int32_t substeps = (int32_t)ceil(dt / SUBSTEP - 1e-6);
+    int32_t substeps = (int32_t)ceil(dt / crowd->longest_substep - 1e-6);
     if (substeps < 1) substeps = 1;
     double h = dt / substeps;
     int status = SIM_OK;

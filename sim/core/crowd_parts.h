@@ -41,6 +41,7 @@ struct Crowd {
     Vec *base; /* by body: where it was then */
     double *base_angle;
     double substep; /* the last one's length: impulses are of that long */
+    double longest_substep;
     int32_t body_count, shape_count, piece_count;
     Mover *mover; /* by body */
     int32_t *active; /* the bodies that take part in the frame */
