@@ -94,6 +94,7 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     int status = SIM_OK;
     touch_refresh(crowd, world, left);
     accelerate(crowd, world, dt);
+    rows_weigh(rows, mover);
     rows_measure(rows, 0, mover, threshold);
     rows_warm_start(rows, 0, mover);
     bool found = true;

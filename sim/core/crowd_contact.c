@@ -1,17 +1,11 @@
 /* Contacts from manifolds: levers, masses, what is remembered of them. */
 #include "crowd_parts.h"
 
-static const double APART = 1e3; /* conditioning up to which two points are solved as a pair */
-
 static void fill_point(Contact *c, int32_t k, Vec ra, Vec rb, double radius_a, double radius_b) {
     Vec n = c->normal;
     double na = vcross(ra, n), nb = vcross(rb, n);
     c->spin_na[k] = na;
     c->spin_nb[k] = nb;
-    c->mobility[k] =
-        c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * na * na + c->inverse_moment_b * nb * nb;
-    c->mass_n[k] = 1 / c->mobility[k];
-    c->cross[k] = c->inverse_moment_a * na * c->spin_ta + c->inverse_moment_b * nb * c->spin_tb;
     /* how far along the normal the corner is that turns; a disk touches with another point of it as it turns: its centre */
     double a = vdot(ra, n) + (c->side > 0 ? radius_b : -radius_a),
            b = vdot(rb, n) + (c->side < 0 ? -radius_a : radius_b);
@@ -24,8 +18,6 @@ static void fill_point(Contact *c, int32_t k, Vec ra, Vec rb, double radius_a, d
 static void fill_friction(Contact *c, Vec ra, Vec rb) {
     c->spin_ta = vdot(ra, c->normal); /* r x t, as t is n turned by a right angle */
     c->spin_tb = vdot(rb, c->normal);
-    c->mass_t = 1 / (c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * c->spin_ta * c->spin_ta +
-                     c->inverse_moment_b * c->spin_tb * c->spin_tb);
 }
 
 /* The points of a contact from its manifold, with the impulses that the same points had in `old`. */
@@ -44,11 +36,13 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
     c->impulse_t = c->pair_mass = 0;
     c->slide_a = c->side > 0;
     c->slide_b = c->side < 0;
-    c->spin_na = c->spin_nb = c->mobility = c->mass_n = c->bend_aa = c->bend_bb = c->bend_ab = c->cross = none;
+    c->spin_na = c->spin_nb = c->bend_aa = c->bend_bb = c->bend_ab = none;
     c->impulse_n = c->limit = c->separation = none;
     Ends *ends = &crowd->rows.ends[c - crowd->rows.contact];
-    ends->kind = m->count == 0 ? KIND_OPEN : m->count == 1 ? KIND_ONE : KIND_TURNS;
-    if (m->count == 0) return;
+    if (m->count == 0) {
+        contact_weigh(c, ends, a, b);
+        return;
+    }
     Vec middle = m->count > 1 ? vscale(vadd(m->point[0].point, m->point[1].point), 0.5) : m->point[0].point;
     fill_friction(c, vsub(middle, at_a), vsub(middle, at_b));
     for (int32_t k = 0; k < m->count; k++) {
@@ -70,14 +64,7 @@ void contact_set_points(Crowd *crowd, const World *world, Contact *c, const Mani
     }
     /* what the movers have done in the frame so far is in gap_now(), and taken off here */
     c->separation = found - gap_now(c, a, b);
-    if (c->count < 2) return;
-    double k11 = c->mobility[0], k22 = c->mobility[1];
-    c->coupling = c->inverse_mass_a + c->inverse_mass_b + c->inverse_moment_a * c->spin_na[0] * c->spin_na[1] +
-                  c->inverse_moment_b * c->spin_nb[0] * c->spin_nb[1];
-    double determinant = k11 * k22 - c->coupling * c->coupling;
-    if (k11 * k22 >= APART * determinant) return;
-    c->pair_mass = 1 / determinant;
-    ends->kind = KIND_PAIR;
+    contact_weigh(c, ends, a, b);
 }
 
 /* Bodies this slow come to rest by rolling resistance, as real ones do: without it a box rocks on a ball for ever. */
@@ -88,19 +75,6 @@ bool crowd_is_slow(const World *world, int32_t body) {
     return vdot(b->velocity, b->velocity) + b->spin * b->spin * b->reach * b->reach < limit;
 }
 
-/* In their contact a body counts as no more than so many times as heavy as the other: sequential impulses take as many
- * passes as that to hold the heavy on the light, and a blow is hardly different. */
-static void set_masses(Contact *c, const Mover *a, const Mover *b) {
-    static const double HEAVIER = 30;
-    double least_a = b->inverse_mass / HEAVIER, least_b = a->inverse_mass / HEAVIER;
-    double scale_a = a->inverse_mass > 0 && a->inverse_mass < least_a ? least_a / a->inverse_mass : 1;
-    double scale_b = b->inverse_mass > 0 && b->inverse_mass < least_b ? least_b / b->inverse_mass : 1;
-    c->inverse_mass_a = scale_a * a->inverse_mass;
-    c->inverse_moment_a = scale_a * a->inverse_moment;
-    c->inverse_mass_b = scale_b * b->inverse_mass;
-    c->inverse_moment_b = scale_b * b->inverse_moment;
-}
-
 void contact_add(Crowd *crowd, const World *world, const Near *near, const Manifold *m) {
     static const double SLACK = 0.05, SLOP = 0.005, FINE = 3e-3, ROLLING = 2e-2;
     const Shape *sa = &world->shape[world->piece[near->piece_a].shape];
@@ -109,10 +83,11 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     int32_t i = crowd->rows.count++;
     Contact *c = &crowd->rows.contact[i];
     bool moves_a = crowd->mover[near->a].inverse_mass > 0, moves_b = crowd->mover[near->b].inverse_mass > 0;
-    crowd->rows.ends[i] = (Ends){near->a, near->b, KIND_OPEN, moves_a, moves_b};
+    crowd->rows.ends[i] = (Ends){near->a, near->b, KIND_OPEN,
+                                 moves_a, moves_b, contact_is_uneven(&crowd->mover[near->a], &crowd->mover[near->b])};
     c->a = near->a;
     c->b = near->b;
-    set_masses(c, &crowd->mover[near->a], &crowd->mover[near->b]);
+    c->lightens = false;
     c->friction = pair_friction(sa, sb);
     c->elasticity = pair_elasticity(sa, sb);
     c->slack = SLACK * reach;
@@ -121,7 +96,6 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     c->rolling = crowd_is_slow(world, near->a) && crowd_is_slow(world, near->b)
                      ? ROLLING * reach * (c->friction < 1 ? c->friction : 1)
                      : 0;
-    c->twist_mass = c->rolling > 0 ? 1 / (c->inverse_moment_a + c->inverse_moment_b) : 0;
     c->key = pair_key(near->piece_a, near->piece_b);
     crowd->touched[near->a] = crowd->touched[near->b] = true;
     c->touching = events_touching(crowd, world, c);

@@ -35,6 +35,7 @@ typedef struct Ends {
     int32_t a, b; /* movers */
     uint8_t kind;
     bool moves_a, moves_b; /* the two have finite masses */
+    bool uneven;           /* and very different ones */
 } Ends;
 
 /* What the passes read comes first: it is what the cache holds.  The points of a contact lie on one line, along which they
@@ -70,6 +71,7 @@ typedef struct Contact {
     Vec moved; /* likewise */
     double elasticity;
     uint64_t key; /* the pieces */
+    bool lightens; /* the heavier body counts as much lighter (crowd_weigh.c) */
     bool touching; /* as has been told (crowd_events.c) */
 } Contact;
 
@@ -111,6 +113,12 @@ static inline Two both(double x) { return (Two){x, x}; }
 static inline Two swapped(Two x) { return (Two){x[1], x[0]}; }
 static inline double sum_of(Two x) { return x[0] + x[1]; }
 static inline Two positive(Two x) { return (Two)((Mask)x & (Mask)(x > both(0))); } /* else 0 */
+
+/* Masses (crowd_weigh.c): whether those of two bodies are very different; what the levers, once they are known, make of them;
+ * and, once for each contact of a substep, before it is measured, which are to count. */
+bool contact_is_uneven(const Mover *a, const Mover *b);
+void contact_weigh(Contact *contact, Ends *ends, const Mover *a, const Mover *b);
+void rows_weigh(Rows *rows, const Mover *mover);
 
 /* Solving for velocities (crowd_rows.c); `from`: the first contact that it is for. */
 
