@@ -26,6 +26,8 @@ __all__ = ["Traced", "trace_picture"]
 Points = NDArray[np.float64]
 
 WORK_PIXELS = 2_500_000  # more than this are not looked at before the pen's width is known
+DOTTED = 0.12  # of the picture's pixels: lines of a drawing are farther apart than eight pixels
+FEWEST_DOTS = 10_000  # [pixels] unless the picture is as small as a stamp
 LEAST_SIDE = 8  # [pixels] of a picture that can show anything
 FINEST = 0.5  # picture pixels to a pixel: the thinnest pens are thinned at twice the picture's resolution
 NARROWEST_PEN = 3.0  # [pixels]: a thinner pen is thinned at twice the resolution
@@ -71,11 +73,21 @@ def trace_picture(picture: NDArray[Any]) -> Traced:
         if not seen.pen:
             return seen
         tried.add(scale)
-        scale *= 2.0 if seen.pen > WIDEST_PEN else 0.5 if seen.pen < NARROWEST_PEN else 1.0
+        scale *= (
+            2.0 if seen.pen > WIDEST_PEN or _is_dotted(seen) else 0.5 if seen.pen < NARROWEST_PEN else 1.0
+        )
         if scale in tried or scale < FINEST or min(picture.shape[:2]) < 100 * scale:
             break
-    seen.strokes = _strokes(seen)
+    if not _is_dotted(seen):
+        seen.strokes = _strokes(seen)
     return seen
+
+
+def _is_dotted(seen: Traced) -> bool:
+    """Whether the ink is the dots of a dithered or printed grey, which is looked at from farther off."""
+    if seen.skeleton is None:
+        return False
+    return bool(np.count_nonzero(seen.skeleton) > max(DOTTED * seen.skeleton.size, FEWEST_DOTS))
 
 
 def _see(picture: NDArray[Any], scale: float) -> Traced:

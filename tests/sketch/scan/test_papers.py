@@ -136,6 +136,15 @@ def test_kinds_of_pixels(kind: str) -> None:
     assert_all(read_picture(encoded(picture)))
 
 
+def test_dithered_grey_is_paper() -> None:
+    """Its dots are no ink, and what was drawn on it is still there."""
+    matrix = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]]) * 16 + 8
+    grey = drawn(ink(pen=6), paper=(150, 150, 150), pen=(20, 20, 20))[..., 1]
+    dots = np.where(grey > np.tile(matrix, (HEIGHT // 4, WIDTH // 4)), 255, 0).astype(np.uint8)
+    sketch = read_picture(encoded(dots))
+    assert 0 < len(sketch.strokes) < 10
+
+
 def with_orientation(jpeg: bytes, orientation: int) -> bytes:
     tags = struct.pack("<2sHIHHHII", b"II", 42, 8, 1, 274, 3, 1, orientation) + b"\0\0\0\0"
     exif = b"Exif\0\0" + tags
