@@ -18,7 +18,7 @@ __all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "shafts"]
 
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
 MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
-MOST_OPEN = 6  # and of those with wide gaps, which are many in a tangle
+MOST_OPEN = 5  # and of those with wide gaps, which are many in a tangle
 WIDE = 0.1  # of a chain's ink
 PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
