@@ -70,7 +70,8 @@ def interpret(
         what = _strokes(s for s in left if s not in read)
         part = _strokes(s for s in left if s in read)
         what = " and ".join(w for w in (what, part and f"a part of {part}") if w)
-        notes.append(f"left out: {what}, which fits nothing that has a meaning")
+        fits = "fits" if len(left) == 1 else "fit"
+        notes.append(f"left out: {what}, which {fits} nothing that has a meaning")
     several = _strokes(s for s, count in read.items() if count > 1)
     if several:
         notes.append(
