@@ -19,10 +19,8 @@ __all__ = ["ScaleBar", "annotate", "length_label", "round_length", "scale_bar"]
 
 Array = NDArray[np.float64]
 
-MARGIN, TALL = (
-    26.0,
-    44.0,
-)  # of the scale bar: from the sides, and how high it is with its text [units of the pen]
+# Of the scale bar: from the sides, and how high it is with its text [units of the pen].
+MARGIN, TALL = 26.0, 44.0
 BELOW = 54.0  # of what stands in the upper corners already [units]
 COARSE = 4  # the room is looked at in pixels of so many of the picture's
 

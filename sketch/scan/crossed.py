@@ -20,10 +20,8 @@ __all__ = ["crossed"]
 
 Points = NDArray[np.float64]
 
-SMALLEST, LARGEST = (
-    2.5,
-    12.0,
-)  # pen widths between the tips of the longer bar: the skeleton of larger marks is plain
+# Pen widths between the tips of the longer bar: the skeleton of larger marks is plain.
+SMALLEST, LARGEST = 2.5, 12.0
 CORE = 0.3  # pen widths from the paper: ink so deep is near the pen's middle
 LIKE = 3.0  # times that one bar may be as long as the other
 BLUNT = 0.25  # pen widths that a tip may be off the straight line between others
