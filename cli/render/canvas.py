@@ -26,6 +26,7 @@ Box: TypeAlias = tuple[int, int, int, int]  # left, top, right, bottom [pixels],
 
 SHIFT = 4
 ONE = 1 << SHIFT
+LEVELS = np.arange(256, dtype=np.uint8)  # the opacities that a pixel of a mask can have
 FAR = 1 << 26  # nothing is drawn farther out, where cv2's integers would run over
 
 # cv2's anti-aliased fills reach this far over the outline [pixels] (measured: 0.59 to 0.77, by direction);
@@ -122,7 +123,12 @@ class Canvas:
 
         On a video frame the corner has to be even.
         """
-        self.put(stamp([(mask, color)], self.is_yuv), corner)
+        # The arithmetic is done once for each opacity that a pixel can have, not for every pixel.
+        tables = (_over([LEVELS], [value]) for value in paint(color, self.is_yuv))
+        opacities = (_sized_for(plane, mask) for plane in range(len(self.planes)))
+        self.put(
+            tuple((kept[m], added[m]) for m, (kept, added) in zip(opacities, tables, strict=True)), corner
+        )
 
     def put(self, stamp: Stamp, corner: tuple[int, int]) -> None:
         """Lay a stamp over the picture, its corner at a column and row: even ones on a video frame."""
@@ -142,23 +148,33 @@ def stamp(layers: Sequence[tuple[Bytes, RGB]], yuv: bool) -> Stamp:
 
     For every plane what is left of a pixel [1/256], and what is added to that [1/256].
     """
+    values = zip(*(paint(color, yuv) for _, color in layers), strict=True)
+    return tuple(
+        _over([_sized_for(plane, mask) for mask, _ in layers], colors) for plane, colors in enumerate(values)
+    )
+
+
+def _sized_for(plane: int, mask: Bytes) -> Bytes:
+    """A mask at the resolution of a plane: half of it for the colours of a video frame."""
     import cv2
 
-    planes = []
-    for k in range(2 if yuv else 1):
-        share: Any = 1.0
-        added: Any = 0.0
-        for mask, color in layers:
-            covering: Any = mask
-            if k > 0:
-                half = (mask.shape[1] // 2, mask.shape[0] // 2)
-                covering = cv2.resize(mask, half, interpolation=cv2.INTER_AREA)
-            value = np.array(paint(color, yuv)[k], float)
-            opacity = covering.reshape(covering.shape + (1,) * (len(value) > 1)) / 255
-            share, added = share * (1 - opacity), added * (1 - opacity) + value * opacity
-        kept = np.rint(256 * share).astype(np.uint16)
-        planes.append((kept, np.rint(256 * added + 127.5 * (kept < 256)).astype(np.uint16)))
-    return tuple(planes)
+    if plane == 0:
+        return mask
+    half = (mask.shape[1] // 2, mask.shape[0] // 2)
+    return np.asarray(cv2.resize(mask, half, interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def _over(
+    masks: Sequence[Bytes], values: Sequence[Sequence[float]]
+) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
+    """One plane of a stamp: what layers of one opacity (...) and value (channels,) each keep and add."""
+    share: Any = 1.0
+    added: Any = 0.0
+    for mask, value in zip(masks, values, strict=True):
+        opacity = mask.reshape(mask.shape + (1,) * (len(value) > 1)) / 255
+        share, added = share * (1 - opacity), added * (1 - opacity) + np.array(value, float) * opacity
+    kept = np.rint(256 * share).astype(np.uint16)
+    return kept, np.rint(256 * added + 127.5 * (kept < 256)).astype(np.uint16)
 
 
 def paint(color: RGB, yuv: bool) -> tuple[Any, ...]:
