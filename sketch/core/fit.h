@@ -70,6 +70,8 @@ double nearest_rectangle(const double *corners, const double to[4], double *box)
 /* Whether two pieces share no ink: rivals[from[i] .. from[i + 1]] are those that share some with piece i; from may be null. */
 int ink_apart(const int32_t *rivals, const int32_t *from, int i, int j);
 
+int again_end(const double *p, int first, int step, int n, double length, double extent);
+
 double segment_distance2(double px, double py, const double a[2], const double b[2]);
 
 #endif

@@ -8,6 +8,7 @@ static const double ENOUGH = 0.045; /* of the spread of a stroke: a polyline tha
 
 enum {
     BENDS = 6, /* segments of a polyline that anything with a meaning may have */
+    AGAIN = 4, /* times that a side is drawn at an end of a stroke */
     LEGS = 12  /* and of one that ink is said freely with */
 };
 
@@ -145,6 +146,15 @@ INK_API void ink_strokes(const double *xy, const int32_t *ends, int32_t count, d
                 memmove(p, p + 2 * a, 2 * n * sizeof *p);
                 moments(p, n, &m[0], mean, spread);
             }
+        }
+        for (int back = 0, e = 0; e < 2 * AGAIN && n >= 5 && back < 2; e++) { /* what it goes over more than once */
+            int a = e % 2 ? again_end(p, n - 1, -1, n, m[0], 3 * sqrt(spread[0] + spread[2]))
+                          : again_end(p, 0, 1, n, m[0], 3 * sqrt(spread[0] + spread[2]));
+            back = a ? 0 : back + 1;
+            if (a == 0) continue;
+            n -= a;
+            if (e % 2 == 0) memmove(p, p + 2 * a, 2 * n * sizeof *p);
+            moments(p, n, &m[0], mean, spread);
         }
         out += n;
         clean_ends[s] = out;

@@ -160,6 +160,22 @@ def test_one_side_drawn_twice_is_one_side() -> None:
         assert kinds(read(twice, [s + 2 for s in twice])) == ["3-gon"]
 
 
+@pytest.mark.parametrize("times", [2, 3, 4])
+def test_a_side_drawn_forth_and_back_is_one_side(times: int) -> None:
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        corners = turned(box(0, 0, 260, 170), 0.7, (400, 300))
+        sides = zip(corners, [*corners[1:], corners[0]], strict=True)
+        ink = [
+            line([(a, b)[k % 2] for k in range(times + 1)] if j else [a, b], HANDS["neat"], rng)
+            for j, (a, b) in enumerate(sides)
+        ]
+        assert kinds(read(*ink)) == ["4-gon"]
+        assert kinds(read(line([(200, 306), (230, 309), (150, 300), (420, 330)], HANDS["neat"], rng))) == [
+            "bar"
+        ]
+
+
 def test_a_gap_of_a_tenth_of_the_outline() -> None:
     for seed in range(6):
         rng = np.random.default_rng(seed)
