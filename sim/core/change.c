@@ -63,7 +63,7 @@ int change_tell_contacts(Exact *e, double time) {
         if (!c->active) continue;
         uint64_t pair = pair_of(&c->feature);
         bool had = knows(&e->before, pair) || (rested(e, c->feature.body_a) && rested(e, c->feature.body_b));
-        if (!had && !knows(&e->after, pair)) status = tell(e, time, SIM_CONTACT_BEGUN, pair, contact_point(g, k));
+        if (!had && !knows(&e->after, pair)) status = tell(e, time, SIM_CONTACT_BEGUN, pair, g->contact[k].gap.point);
         if (status == SIM_OK) status = add(&e->after, &c->feature);
     }
     for (int32_t k = 0; k < e->before.count && status == SIM_OK; k++) {

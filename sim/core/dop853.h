@@ -7,6 +7,7 @@
 
 #define STAGES 12     /* of a step */
 #define ALL_STAGES 16 /* with those that dense output needs beside them */
+#define DENSE 4       /* terms of dense output that those make */
 
 /* times of the stages, as parts of the step; the thirteenth is the step's end */
 /* clang-format off */

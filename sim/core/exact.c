@@ -11,6 +11,7 @@
 #define JAMMED 1000.0      /* times the slack: a speed against constraints that says they contradict each other */
 #define STEPS_A_SECOND 20000.0 /* of the integrator, a simulated second: what turns faster than that is for the crowd */
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
+#define ALL_PAIRS_OF 16 /* bodies: fewer are not sorted for the search */
 #define STEPS_OF_PAIR 32.0 /* of a search that cost as much again as looking at a pair at all */
 #define GLANCE 0.5 /* of a pair: what it costs to see that the two do not come near each other */
 #define PAIRS_OF_FEW 1e6 /* a few bodies are worth this many pairs among them: exactness is what is asked for */
@@ -33,9 +34,13 @@ int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance) {
     e->root = malloc(n * sizeof *e->root);
     e->changed = calloc(n, sizeof *e->changed);
     e->fresh = calloc(n, sizeof *e->fresh);
+    e->searched = calloc(n, sizeof *e->searched);
+    e->box = calloc(n, sizeof *e->box);
     if (!e->track || !e->island || !e->motion || !e->course || !e->acceleration || !e->root) return SIM_OUT_OF_MEMORY;
-    if (!e->changed || !e->fresh) return SIM_OUT_OF_MEMORY;
-    int status = system_create(&e->group, world);
+    if (!e->changed || !e->fresh || !e->searched || !e->box) return SIM_OUT_OF_MEMORY;
+    e->box[0] = (Box){vec(INFINITY, 0), vec(-INFINITY, 0)}; /* the background is everywhere, and asked for by itself */
+    int status = sweep_create(&e->sweep, world->body_count);
+    if (status == SIM_OK) status = system_create(&e->group, world);
     if (status == SIM_OK) status = system_create(&e->part, world);
     if (status == SIM_OK) status = smooth_create(&e->smooth, world, tolerance, slack);
     State still = {0};
@@ -56,6 +61,9 @@ void exact_destroy(Exact *e) {
     free(e->root);
     free(e->changed);
     free(e->fresh);
+    free(e->searched);
+    free(e->box);
+    sweep_destroy(&e->sweep);
     free(e->impulse);
     free(e->touching);
     free(e->closed);
@@ -114,9 +122,43 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     if (b != 0 && t < tb->touch_time) tb->touch_time = t, tb->partner = a;
 }
 
-/* Find the first touches of all bodies marked as changed, and of those whose partner was one of them. */
-static void find_touches(Exact *e, double from) {
+/* Where a body can be from some time until it is as late as `to` or its motion ends. */
+static Box reached_box(const Exact *e, int32_t body, double from, double to) {
+    const Course *c = &e->course[body];
+    double time = fmax(0, fmin(to, e->track[body].motion.end) - from);
+    double way = e->world->body[body].reach + e->slack.gap + c->speed * time + 0.5 * c->pull * time * time;
+    return box_grow((Box){c->position, c->position}, way);
+}
+
+/* First touches of two bodies, of which one at least is marked as changed: few are all looked at, of many those whose
+ * boxes meet. */
+static int find_pairs_touches(Exact *e, double from) {
     int32_t n = e->world->body_count;
+    if (n <= ALL_PAIRS_OF) {
+        for (int32_t i = 1; i < n; i++)
+            for (int32_t j = 1; e->changed[i] && is_tracked(e, i) && j < n; j++)
+                if (j != i && is_tracked(e, j) && !(e->changed[j] && j < i)) find_touch(e, i, j, from);
+        return SIM_OK;
+    }
+    double to = 0;
+    for (int32_t i = 1; i < n; i++)
+        if (e->changed[i] && is_tracked(e, i)) to = fmax(to, fmin(e->horizon, e->track[i].motion.end));
+    for (int32_t i = 1; i < n; i++) {
+        e->searched[i] = e->changed[i] && is_tracked(e, i);
+        e->box[i] = is_tracked(e, i) ? reached_box(e, i, from, to) : (Box){vec(INFINITY, 0), vec(-INFINITY, 0)};
+    }
+    int status = sweep_pairs(&e->sweep, e->box, e->searched);
+    for (int32_t k = 0; k < e->sweep.pair_count && status == SIM_OK; k++) {
+        int32_t a = e->sweep.pair[k].a, b = e->sweep.pair[k].b;
+        find_touch(e, e->searched[a] ? a : b, e->searched[a] ? b : a, from);
+    }
+    return status;
+}
+
+/* Find the first touches of all bodies marked as changed, and of those whose partner was one of them. */
+static int find_touches(Exact *e, double from) {
+    int32_t n = e->world->body_count;
+    int status = SIM_OK;
     double start = seconds_now();
     for (int32_t i = 1; i < n; i++)
         if (!e->changed[i] && is_tracked(e, i) && isfinite(e->track[i].touch_time) && e->changed[e->track[i].partner])
@@ -128,24 +170,22 @@ static void find_touches(Exact *e, double from) {
         any = true;
     }
     for (int32_t i = 1; any && i < n; i++) e->course[i] = motion_course(&e->track[i].motion, from);
-    for (int32_t i = 1; i < n; i++) {
-        if (!e->changed[i] || !is_tracked(e, i)) continue;
-        find_touch(e, i, 0, from);
-        for (int32_t j = 1; j < n; j++)
-            if (j != i && is_tracked(e, j) && !(e->changed[j] && j < i)) find_touch(e, i, j, from);
-    }
+    for (int32_t i = 1; i < n; i++)
+        if (e->changed[i] && is_tracked(e, i)) find_touch(e, i, 0, from);
+    status = any ? find_pairs_touches(e, from) : SIM_OK;
     for (int32_t i = 1; i < n; i++) e->changed[i] = false;
     e->world->profile.search_time += seconds_now() - start;
+    return status;
 }
 
 /* Touches are looked for up to a horizon that does not hang on how long the run is to be: a longer one begins as a shorter
  * one does. */
-static void look_farther(Exact *e) {
+static int look_farther(Exact *e) {
     double from = e->horizon;
     e->horizon *= 2;
     for (int32_t i = 1; i < e->world->body_count; i++)
         e->changed[i] = is_tracked(e, i) && e->track[i].motion.degree > 0;
-    find_touches(e, from);
+    return find_touches(e, from);
 }
 
 /* ---------------------------------------------------------------- islands */
@@ -171,50 +211,55 @@ static int load_part(Exact *e, const Island *island, double time) {
     return SIM_OK;
 }
 
-static double energy_of(const Exact *e, int32_t body, const State *s) {
+/* A member's kinetic and potential energy. */
+static void add_energy(const Exact *e, int32_t body, const State *s, double *kinetic, double *potential) {
     const Body *b = &e->world->body[body];
-    return 0.5 * (b->mass * vdot(s->v, s->v) + b->moment * s->spin * s->spin) - b->mass * vdot(e->world->gravity, s->p);
+    *kinetic += 0.5 * (b->mass * vdot(s->v, s->v) + b->moment * s->spin * s->spin);
+    *potential -= b->mass * vdot(e->world->gravity, s->p);
 }
 
 /* A wedge with friction can come where no finite forces hold it (Painleve's paradox): the step that meets that makes energy
  * without bound, and is not to be taken. */
 static bool step_made_energy(const Exact *e, double from) {
-    double before = 0, after = 0, kinetic = 0, mass = 0;
+    double start_kinetic = 0, start_potential = 0, kinetic = 0, potential = 0, mass = 0;
     for (int32_t k = 0; k < e->part.count; k++) {
         int32_t member = e->part.member[k];
         State start = motion_state(&e->motion[k], from), end = motion_state(&e->motion[k], e->motion[k].end);
-        before += energy_of(e, member, &start);
-        after += energy_of(e, member, &end);
-        kinetic += energy_of(e, member, &end) + e->world->body[member].mass * vdot(e->world->gravity, end.p);
+        add_energy(e, member, &start, &start_kinetic, &start_potential);
+        add_energy(e, member, &end, &kinetic, &potential);
         mass += e->world->body[member].mass;
     }
+    double made = kinetic + potential - start_kinetic - start_potential;
     double unseen = 10 * e->slack.speed, rounding = vlength(e->world->gravity) * e->tolerance + 0.5 * unseen * unseen;
-    return !(after - before <= 0.01 * kinetic + mass * rounding); /* nor one that is no number */
+    return !(made <= 0.01 * kinetic + mass * rounding); /* nor one that is no number */
 }
 
 int island_advance(Exact *e, int32_t index, double from) {
     Island *island = &e->island[index];
     double start = seconds_now();
     int status = load_part(e, island, from);
-    e->smooth.relax = island->relax;
+    e->smooth.relax = island->pace.relax;
     if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
     double left = 0;
     if (status == SIM_OK) status = project(&e->smooth, &e->part, &left);
     e->steps = fmax(0, e->steps - STEPS_A_SECOND * (from - e->steps_time)) + 1;
     e->steps_time = from;
     island->jammed = left > JAMMED * e->slack.speed || e->steps > STEPS_A_SECOND;
-    if (status == SIM_OK) status = smooth_step(&e->smooth, &e->part, from, &island->step, e->motion, &island->ended);
+    if (status == SIM_OK) status = smooth_step(&e->smooth, &e->part, from, &island->pace, e->motion, &island->ended);
     island->jammed = island->jammed || (status == SIM_OK && step_made_energy(e, from));
     island->ended = island->ended || island->jammed;
-    island->relax = e->smooth.relax;
     for (int32_t k = 0; k < island->contact_count; k++) island->contact[k] = e->part.contact[k];
     for (int32_t k = 0; k < island->member_count; k++) {
         Track *track = &e->track[island->member[k]];
         record_motion(e->recorder, island->member[k], &track->motion, from);
-        State state = motion_state(&track->motion, from);
-        track->motion = island->jammed ? motion_in_flight(&state, from, e->world->gravity) : e->motion[k];
-        if (island->jammed) track->motion.end = from;
-        track->step = island->step;
+        if (island->jammed) {
+            State state = motion_state(&track->motion, from);
+            track->motion = motion_in_flight(&state, from, e->world->gravity);
+            track->motion.end = from;
+        } else {
+            track->motion = e->motion[k];
+        }
+        track->step = island->pace.step;
         e->changed[island->member[k]] = true;
     }
     e->world->profile.smooth_steps += 1;
@@ -282,8 +327,7 @@ static int take_up(Exact *e, double time) {
         if (status == SIM_OK) status = group_reform(e, time);
         if (status != SIM_OK) return status;
     }
-    find_touches(e, time);
-    return SIM_OK;
+    return find_touches(e, time);
 }
 
 static void adopt(Exact *e, int32_t body, double time) {
@@ -330,15 +374,14 @@ static double next_event(const Exact *e, int32_t *body, int32_t *island) {
 }
 
 int exact_run(Exact *e, double from, double until, double *reached) {
-    int status = SIM_OK;
     bool crowded = false;
     *reached = from;
-    find_touches(e, from); /* of what came back from the crowd */
+    int status = find_touches(e, from); /* of what came back from the crowd */
     while (status == SIM_OK && !crowded) {
         int32_t body, island;
         double time = next_event(e, &body, &island);
         if (e->horizon <= fmin(time, until)) {
-            look_farther(e);
+            status = look_farther(e);
             continue;
         }
         if (time >= until) {
@@ -359,7 +402,7 @@ int exact_run(Exact *e, double from, double until, double *reached) {
         } else {
             status = handle_touch(e, body, time, &crowded);
         }
-        if (status == SIM_OK) find_touches(e, time);
+        if (status == SIM_OK) status = find_touches(e, time);
         if (status == SIM_OK && is_over_budget(e, time)) {
             status = hand_over_all(e, time);
             crowded = crowded || e->group.count > 0;

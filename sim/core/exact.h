@@ -6,6 +6,7 @@
 #ifndef EXACT_H
 #define EXACT_H
 
+#include "broad.h"
 #include "impact.h"
 #include "record.h"
 #include "smooth.h"
@@ -15,8 +16,7 @@ typedef struct Island {
     int32_t member_count, contact_count, member_capacity, contact_capacity;
     int32_t *member;
     Contact *contact;
-    double step; /* length to try next [s] */
-    double relax; /* of its redundant rows */
+    Pace pace;
     bool ended;  /* the modes of its contacts end with its present motion */
     bool jammed;  /* its constraints cannot be met: it goes to the crowd */
     bool in_use;
@@ -63,6 +63,9 @@ typedef struct Exact {
     int32_t closed_capacity;
     PairList before, after;   /* pairs in contact, before an event and after it */
     bool *changed, *fresh;    /* bodies whose touches, or everything, have to be looked at again */
+    Sweep sweep;
+    Box *box;       /* where each body can be while touches are looked for */
+    bool *searched; /* bodies of which they are */
     bool from_crowd;          /* it is the crowd's bodies that are taken up */
     double spent, spent_time; /* pairs looked at lately, for the budget */
     double steps, steps_time; /* of the integrator, likewise */

@@ -101,20 +101,12 @@ static int find_pulls(Exact *e, double time) {
     System *g = &e->group;
     int status = system_place(g);
     if (status != SIM_OK) return status;
-    system_find_bias(g);
     for (int32_t i = 0; i < g->count; i++) {
         State a = motion_acceleration(&e->track[g->member[i]].motion, time);
         e->acceleration[3 * i] = a.v.x, e->acceleration[3 * i + 1] = a.v.y, e->acceleration[3 * i + 2] = a.spin;
     }
-    for (int32_t k = 0; k < g->contact_count; k++) {
-        const Row *row = contact_row(g, k);
-        double pull = -row->bias;
-        for (int i = 0; i < 3; i++) {
-            if (row->a >= 0) pull -= row->ja[i] * e->acceleration[3 * row->a + i];
-            if (row->b >= 0) pull -= row->jb[i] * e->acceleration[3 * row->b + i];
-        }
-        g->contact[k].pull = pull;
-    }
+    for (int32_t k = 0; k < g->contact_count; k++)
+        g->contact[k].pull = -row_acceleration(contact_row(g, k), e->acceleration);
     return SIM_OK;
 }
 
@@ -203,13 +195,13 @@ static int resolve(Exact *e, double time) {
         Vec p = e->impulse[k];
         if (p.x == 0 && p.y == 0) continue;
         const Feature *f = &g->contact[k].feature;
-        Vec point = contact_point(g, k);
+        Vec point = g->contact[k].gap.point;
         SimEvent event = {
             .time = time,
             .kind = SIM_IMPACT,
             .body = {e->world->shape[f->shape_b].source, e->world->shape[f->shape_a].source},
             .point = {point.x, point.y},
-            .impulse = {p.x * row[0].ja[0] + p.y * row[1].ja[0], p.x * row[0].ja[1] + p.y * row[1].ja[1]}};
+            .impulse = {p.x * row[0].j[0][0] + p.y * row[1].j[0][0], p.x * row[0].j[0][1] + p.y * row[1].j[0][1]}};
         status = record_event(e->recorder, &event);
     }
     return status;
@@ -253,8 +245,7 @@ static Island *new_island(Exact *e, int32_t *index) {
     Island *island = &e->island[*index];
     island->in_use = true;
     island->member_count = island->contact_count = 0;
-    island->step = FIRST_STEP;
-    island->relax = 0;
+    island->pace = (Pace){.step = FIRST_STEP};
     return island;
 }
 
@@ -333,7 +324,7 @@ static int send_off(Exact *e, int32_t root, double time) {
         e->changed[body] = true;
         if (rest && held && e->world->body[body].mode != MODE_REST) status = change_tell_rest(e, body, time, state.p);
         e->world->body[body].mode = rest ? MODE_REST : held ? MODE_SMOOTH : MODE_FLIGHT;
-        if (island && track->step > 0) island->step = fmin(island->step, track->step);
+        if (island && track->step > 0) island->pace.step = fmin(island->pace.step, track->step);
         if (island && status == SIM_OK) status = island_add(island, &body, NULL);
     }
     e->world->profile.rests += rest && held;

@@ -333,8 +333,8 @@ static void accelerations(const System *s, const double *force, double *out) {
         const Row *row = &s->row[k];
         if (force[k] == 0) continue;
         for (int side = 0; side < 2; side++) {
-            int32_t i = side ? row->b : row->a;
-            const double *f = side ? row->fb : row->fa;
+            int32_t i = row->member[side];
+            const double *f = row->f[side];
             if (i < 0) continue;
             const Body *body = &s->world->body[s->member[i]];
             out[3 * i] += force[k] * body->inverse_mass * f[0];
@@ -354,7 +354,6 @@ int find_modes(ContactSolver *solver, System *s, const Slack *slack, double *acc
     if (status == SIM_OK) status = system_place(s);
     if (status == SIM_OK) status = reserve_rounds(solver, s, &r);
     if (status != SIM_OK) return status;
-    system_find_bias(s);
     memset(r.force, 0, (size_t)s->row_count * sizeof *r.force);
     accelerations(s, r.force, acceleration);
     for (int32_t i = 0; i < s->row_count; i++) r.wanted[i] = row_acceleration(&s->row[i], acceleration);

@@ -94,6 +94,12 @@ static void polynomial_bound(const double *c, int degree, double x, double *valu
     }
 }
 
+double motion_fastest(const Motion *m) {
+    Vec most = {0, 0};
+    for (int k = 0; k <= m->degree; k++) most = vadd(most, vec(fabs(m->v[0][k]), fabs(m->v[1][k])));
+    return vlength(most);
+}
+
 MotionBound motion_bound(const Motion *m, double from, double to) {
     MotionBound bound = {.is_steady = m->degree <= 2};
     if (m->degree == 0) return bound;

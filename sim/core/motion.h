@@ -44,6 +44,9 @@ State motion_state(const Motion *motion, double time);
 State motion_acceleration(const Motion *motion, double time); /* in v and spin */
 Vec motion_position(const Motion *motion, double time);
 
+/* The speed that a motion does not exceed within its span. */
+double motion_fastest(const Motion *motion);
+
 /* Where a body is and goes from some time on, as much of it as a first look at a pair asks. */
 typedef struct Course {
     Vec position, velocity, fall; /* of rest and flight; fall: the acceleration */

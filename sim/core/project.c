@@ -4,6 +4,7 @@
 
 #define RELAX 1e-6    /* makes redundant rows solvable; what that leaves is taken away by iterating */
 #define FARTHEST 20.0 /* times the error that is corrected: a correction goes no farther */
+#define UNSEEN 0.02   /* of the slack: a drift as small as this is left for later */
 
 static double position_error(const System *system, int32_t row) {
     bool is_joint = row < 2 * system->joint_count;
@@ -15,8 +16,7 @@ static double position_error(const System *system, int32_t row) {
     }
     if (row & 1) return 0;
     const Contact *c = &system->contact[row / 2 - system->joint_count];
-    const Feature *f = &c->feature;
-    return feature_gap(f, system_placed(system, f->body_a), system_placed(system, f->body_b)).gap - c->hold;
+    return c->gap.gap - c->hold;
 }
 
 static void move(const System *system, int32_t i, const double *weight, double by) {
@@ -46,8 +46,7 @@ static int place_plain(System *system) {
     int status = system_place(system);
     for (int32_t i = 0; i < system->row_count && status == SIM_OK; i++) {
         Row *row = &system->row[i];
-        memcpy(row->fa, row->ja, sizeof row->fa);
-        memcpy(row->fb, row->jb, sizeof row->fb);
+        memcpy(row->f, row->j, sizeof row->f);
     }
     return status;
 }
@@ -61,18 +60,18 @@ static int project_positions(Smooth *s, System *system) {
         int status = place_plain(system);
         if (status != SIM_OK) return status;
         double worst = 0;
-        for (int32_t i = 0; i < active->count; i++) {
-            active->unknown[i] = -position_error(system, active->row[i]);
+        for (int32_t i = 0; i < 2 * active->count; i++) {
+            active->unknown[i] = active->holds[i] ? -position_error(system, 2 * active->pair[i / 2] + (i & 1)) : 0;
             worst = fmax(worst, fabs(active->unknown[i]));
         }
         if (pass == 0) first = worst;
         if (worst <= s->slack.root) break;
         active_factor(active, system, RELAX);
         active_solve(active);
-        for (int32_t i = 0; i < active->count; i++) {
-            const Row *row = &system->row[active->row[i]];
-            move(system, row->a, active->weight[i], active->unknown[i]);
-            move(system, row->b, active->weight[i] + 3, active->unknown[i]);
+        for (int32_t i = 0; i < 2 * active->count; i++) {
+            const Row *row = active_row(active, system, i);
+            for (int side = 0; row && side < 2; side++)
+                move(system, row->member[side], active->rows[i / 2].weight[i & 1][side], active->unknown[i]);
         }
     }
     keep_if_small(system, s->start, first);
@@ -87,24 +86,48 @@ int project_velocities(Smooth *s, System *system) {
     double first = 0;
     active_factor(active, system, RELAX);
     for (int pass = 0; pass < 3; pass++) {
-        for (int32_t i = 0; i < active->count; i++) {
-            active->unknown[i] = -row_speed(&system->row[active->row[i]], system->state);
+        for (int32_t i = 0; i < 2 * active->count; i++) {
+            const Row *row = active_row(active, system, i);
+            active->unknown[i] = row ? -row_speed(row, system->state) : 0;
             if (pass == 0) first = fmax(first, fabs(active->unknown[i]));
         }
         active_solve(active);
-        for (int32_t i = 0; i < active->count; i++) row_push(system, &system->row[active->row[i]], active->unknown[i]);
+        for (int32_t i = 0; i < 2 * active->count; i++) {
+            const Row *row = active_row(active, system, i);
+            if (row) row_push(system, row, active->unknown[i]);
+        }
     }
     keep_if_small(system, s->start, first);
     return SIM_OK;
 }
 
+static double largest_speed(const Smooth *s, const System *system) {
+    double largest = 0;
+    for (int32_t i = 0; i < 2 * s->active.count; i++) {
+        const Row *row = active_row(&s->active, system, i);
+        if (row) largest = fmax(largest, fabs(row_speed(row, system->state)));
+    }
+    return largest;
+}
+
+/* Whether the system, as it is placed, has hardly drifted off its constraints since it was last put onto them.  Rows that
+ * repeat each other must not contradict each other even by so much. */
+static bool keeps_to_constraints(const Smooth *s, const System *system) {
+    const Active *active = &s->active;
+    if (s->relax > 0) return false;
+    for (int32_t i = 0; i < 2 * active->count; i++)
+        if (active->holds[i] &&
+            !(fabs(position_error(system, 2 * active->pair[i / 2] + (i & 1))) <= UNSEEN * s->slack.gap))
+            return false;
+    return largest_speed(s, system) <= UNSEEN * s->slack.speed;
+}
+
 int project(Smooth *s, System *system, double *left) {
-    Active *active = &s->active;
     *left = 0;
-    if (active->count == 0) return SIM_OK;
+    if (s->active.count == 0 || keeps_to_constraints(s, system)) return SIM_OK;
+    s->known_of = NULL;
     int status = project_positions(s, system);
     if (status == SIM_OK) status = project_velocities(s, system);
-    for (int32_t i = 0; i < active->count; i++)
-        *left = fmax(*left, fabs(row_speed(&system->row[active->row[i]], system->state)));
+    *left = largest_speed(s, system);
     return status;
 }

@@ -5,12 +5,22 @@
 #include "active.h"
 #include "dop853.h"
 
+/* What integrating an island keeps from step to step. */
+typedef struct Pace {
+    double step;        /* length to try next [s] */
+    double last, error; /* length of the last one, and its error, of what is allowed; 0 before any */
+    double relax;       /* what makes redundant rows solvable; 0 as long as none are */
+} Pace;
+
 typedef struct Smooth {
-    double *start, *trial, *end, *k[ALL_STAGES]; /* 6 numbers a member */
+    double *block;                                                /* that holds these: */
+    double *start, *trial, *end, *k[ALL_STAGES], *dense[DENSE]; /* 6 numbers a member */
     double *acceleration;                        /* 3 a member */
     Active active;
     double tolerance;
-    double relax; /* what makes redundant rows solvable: kept by the caller from step to step, 0 at first */
+    double relax;         /* of the island at hand */
+    const Pace *known_of; /* whose slopes at the time known_at are those of stage STAGES; NULL: nobody's */
+    double known_at;
     Slack slack;
     double evals, rows; /* counted for the profile */
 } Smooth;
@@ -21,8 +31,9 @@ void smooth_destroy(Smooth *smooth);
 /* Place the system and choose the rows that hold. */
 int smooth_prepare(Smooth *smooth, System *system);
 
-/* One step from the system's states at time `from`, by a length near *h; *h becomes the length to try next.  motion[i] is filled for every member and ends where the step does, or at the first moment at which a contact's
- * mode no longer holds (it would pull, leave its cone, stop slipping, or leave its side); *ended says whether one did. */
-int smooth_step(Smooth *smooth, System *system, double from, double *h, Motion *motion, bool *ended);
+/* One step from the system's states at time `from`, at the island's pace.  motion[i] is filled for every member and ends
+ * where the step does, or at the first moment at which a contact's mode no longer holds (it would pull, leave its cone, stop
+ * slipping, or leave its side); *ended says whether one did. */
+int smooth_step(Smooth *smooth, System *system, double from, Pace *pace, Motion *motion, bool *ended);
 
 #endif

@@ -79,40 +79,42 @@ const Placed *system_placed(const System *s, int32_t body) {
 }
 
 /* A row along `direction` between two material points at arms ra, rb from the centres. */
-static Row make_row(int32_t a, int32_t b, Vec direction, Vec ra, Vec rb) {
-    Row row = {.a = a, .b = b};
-    row.ja[0] = row.fa[0] = direction.x;
-    row.ja[1] = row.fa[1] = direction.y;
-    row.ja[2] = row.fa[2] = vcross(ra, direction);
-    row.jb[0] = row.fb[0] = -direction.x;
-    row.jb[1] = row.fb[1] = -direction.y;
-    row.jb[2] = row.fb[2] = -vcross(rb, direction);
-    return row;
+static void set_row(Row *row, int32_t a, int32_t b, Vec direction, Vec ra, Vec rb, double bias) {
+    row->member[0] = a, row->member[1] = b;
+    row->j[0][0] = row->f[0][0] = direction.x;
+    row->j[0][1] = row->f[0][1] = direction.y;
+    row->j[0][2] = row->f[0][2] = vcross(ra, direction);
+    row->j[1][0] = row->f[1][0] = -direction.x;
+    row->j[1][1] = row->f[1][1] = -direction.y;
+    row->j[1][2] = row->f[1][2] = -vcross(rb, direction);
+    row->bias = bias;
 }
 
 static void place_joint(System *s, int32_t k) {
     const Joint *joint = &s->world->joint[s->joint[k]];
     const Placed *a = system_placed(s, joint->a), *b = system_placed(s, joint->b);
     Vec ra = turn(a->at, joint->local_a), rb = turn(b->at, joint->local_b);
+    /* d^2/dt^2 of (xa + ra) - (xb + rb): centripetal */
+    Vec bias = vsub(vscale(rb, b->spin * b->spin), vscale(ra, a->spin * a->spin));
     int32_t ia = s->place_of[joint->a], ib = s->place_of[joint->b];
-    joint_row(s, k)[0] = make_row(ia, ib, vec(1, 0), ra, rb);
-    joint_row(s, k)[1] = make_row(ia, ib, vec(0, 1), ra, rb);
+    set_row(&joint_row(s, k)[0], ia, ib, vec(1, 0), ra, rb, bias.x);
+    set_row(&joint_row(s, k)[1], ia, ib, vec(0, 1), ra, rb, bias.y);
 }
 
 static void place_contact(System *s, int32_t k) {
-    const Contact *c = &s->contact[k];
+    Contact *c = &s->contact[k];
     const Placed *a = system_placed(s, c->feature.body_a), *b = system_placed(s, c->feature.body_b);
-    Gap g = feature_gap(&c->feature, a, b);
-    Vec ra = vsub(g.point, a->at.p), rb = vsub(g.point, b->at.p);
+    double normal_bias, along_bias;
+    c->gap = feature_gap(&c->feature, a, b);
+    feature_bias(&c->feature, a, b, &normal_bias, &along_bias);
+    Vec ra = vsub(c->gap.point, a->at.p), rb = vsub(c->gap.point, b->at.p);
     int32_t ia = s->place_of[c->feature.body_a], ib = s->place_of[c->feature.body_b];
     Row *normal = contact_row(s, k), *along = normal + 1;
-    *normal = make_row(ia, ib, g.normal, ra, rb);
-    *along = make_row(ia, ib, g.along, ra, rb);
-    if (c->slide != 0) /* friction against the slip, mu times the normal force */
-        for (int i = 0; i < 3; i++) {
-            normal->fa[i] -= c->slide * c->friction * along->ja[i];
-            normal->fb[i] -= c->slide * c->friction * along->jb[i];
-        }
+    set_row(normal, ia, ib, c->gap.normal, ra, rb, normal_bias);
+    set_row(along, ia, ib, c->gap.along, ra, rb, along_bias);
+    if (c->slide == 0) return;
+    for (int side = 0; side < 2; side++) /* friction against the slip, mu times the normal force */
+        for (int i = 0; i < 3; i++) normal->f[side][i] -= c->slide * c->friction * along->j[side][i];
 }
 
 int system_place(System *s) {
@@ -129,72 +131,45 @@ int system_place(System *s) {
     return SIM_OK;
 }
 
-void system_find_bias(System *s) {
-    for (int32_t k = 0; k < s->joint_count; k++) { /* d^2/dt^2 of (xa + ra) - (xb + rb): centripetal */
-        const Joint *joint = &s->world->joint[s->joint[k]];
-        const Placed *a = system_placed(s, joint->a), *b = system_placed(s, joint->b);
-        Vec bias = vsub(vscale(turn(b->at, joint->local_b), b->spin * b->spin),
-                        vscale(turn(a->at, joint->local_a), a->spin * a->spin));
-        joint_row(s, k)[0].bias = bias.x;
-        joint_row(s, k)[1].bias = bias.y;
-    }
-    for (int32_t k = 0; k < s->contact_count; k++) {
-        const Feature *f = &s->contact[k].feature;
-        Row *normal = contact_row(s, k);
-        feature_bias(f, system_placed(s, f->body_a), system_placed(s, f->body_b), &normal[0].bias, &normal[1].bias);
-    }
-}
-
-Vec contact_point(const System *s, int32_t k) {
-    const Feature *f = &s->contact[k].feature;
-    return feature_gap(f, system_placed(s, f->body_a), system_placed(s, f->body_b)).point;
-}
-
 double row_acceleration(const Row *row, const double *acceleration) {
     double sum = row->bias;
-    for (int i = 0; i < 3; i++) {
-        if (row->a >= 0) sum += row->ja[i] * acceleration[3 * row->a + i];
-        if (row->b >= 0) sum += row->jb[i] * acceleration[3 * row->b + i];
+    for (int side = 0; side < 2; side++) {
+        if (row->member[side] < 0) continue;
+        const double *j = row->j[side], *of = acceleration + 3 * row->member[side];
+        sum += j[0] * of[0] + j[1] * of[1] + j[2] * of[2];
     }
     return sum;
 }
 
 double row_speed(const Row *row, const State *state) {
     double speed = 0;
-    if (row->a >= 0) {
-        const State *a = &state[row->a];
-        speed += row->ja[0] * a->v.x + row->ja[1] * a->v.y + row->ja[2] * a->spin;
-    }
-    if (row->b >= 0) {
-        const State *b = &state[row->b];
-        speed += row->jb[0] * b->v.x + row->jb[1] * b->v.y + row->jb[2] * b->spin;
+    for (int side = 0; side < 2; side++) {
+        if (row->member[side] < 0) continue;
+        const double *j = row->j[side];
+        const State *of = &state[row->member[side]];
+        speed += j[0] * of->v.x + j[1] * of->v.y + j[2] * of->spin;
     }
     return speed;
 }
 
-static void push(const System *s, int32_t i, const double *force, double impulse) {
-    if (i < 0) return;
-    const Body *body = &s->world->body[s->member[i]];
-    State *state = &s->state[i];
-    state->v = vmad(state->v, impulse * body->inverse_mass, vec(force[0], force[1]));
-    state->spin += impulse * body->inverse_moment * force[2];
-}
-
 void row_push(const System *s, const Row *row, double impulse) {
-    push(s, row->a, row->fa, impulse);
-    push(s, row->b, row->fb, impulse);
-}
-
-static double coupling(const System *s, int32_t i, const double *j, const double *f) {
-    const Body *body = &s->world->body[s->member[i]];
-    return body->inverse_mass * (j[0] * f[0] + j[1] * f[1]) + body->inverse_moment * j[2] * f[2];
+    for (int side = 0; side < 2; side++) {
+        int32_t i = row->member[side];
+        if (i < 0) continue;
+        const Body *body = &s->world->body[s->member[i]];
+        s->state[i].v = vmad(s->state[i].v, impulse * body->inverse_mass, vec(row->f[side][0], row->f[side][1]));
+        s->state[i].spin += impulse * body->inverse_moment * row->f[side][2];
+    }
 }
 
 double row_coupling(const System *s, const Row *i, const Row *j) {
     double sum = 0;
-    if (i->a >= 0 && i->a == j->a) sum += coupling(s, i->a, i->ja, j->fa);
-    if (i->a >= 0 && i->a == j->b) sum += coupling(s, i->a, i->ja, j->fb);
-    if (i->b >= 0 && i->b == j->a) sum += coupling(s, i->b, i->jb, j->fa);
-    if (i->b >= 0 && i->b == j->b) sum += coupling(s, i->b, i->jb, j->fb);
+    for (int of_i = 0; of_i < 2; of_i++)
+        for (int of_j = 0; of_j < 2; of_j++) {
+            if (i->member[of_i] < 0 || i->member[of_i] != j->member[of_j]) continue;
+            const Body *body = &s->world->body[s->member[i->member[of_i]]];
+            const double *ji = i->j[of_i], *fj = j->f[of_j];
+            sum += body->inverse_mass * (ji[0] * fj[0] + ji[1] * fj[1]) + body->inverse_moment * ji[2] * fj[2];
+        }
     return sum;
 }

@@ -13,6 +13,7 @@
 typedef struct Contact {
     Feature feature;
     double hold; /* the gap that is kept [m]: within the slack of 0 */
+    Gap gap;     /* where the members are placed */
     double friction, elasticity;
     int slide;                 /* 0: sticks; +1, -1: slides along, against `along` */
     bool active;               /* presses: its normal row holds */
@@ -23,10 +24,10 @@ typedef struct Contact {
 } Contact;
 
 typedef struct Row {
-    int32_t a, b;        /* members; -1 for the background */
-    double ja[3], jb[3]; /* velocity of the row for unit velocities of the members */
-    double fa[3], fb[3]; /* force and torque on the members for a unit of the row's force */
-    double bias;         /* what the row's acceleration has beside J times the accelerations */
+    int32_t member[2]; /* -1 for the background */
+    double j[2][3];    /* velocity of the row for unit velocities of the members */
+    double f[2][3];    /* force and torque on the members for a unit of the row's force */
+    double bias;       /* what the row's acceleration has beside J times the accelerations */
 } Row;
 
 typedef struct System {
@@ -54,9 +55,8 @@ void system_find_joints(System *system); /* all those that hold a member */
 void system_load(System *system, const double *numbers);
 void system_store(const System *system, double *numbers);
 
-/* Work out placed and the rows from the states. */
+/* Work out placed, the contacts' gaps and the rows from the states. */
 int system_place(System *system);
-void system_find_bias(System *system);
 
 const Placed *system_placed(const System *system,
                             int32_t body); /* of a body of the world; the background is no member */
@@ -65,8 +65,6 @@ double row_acceleration(const Row *row, const double *acceleration); /* J a + bi
 double row_speed(const Row *row, const State *state);                  /* J v */
 void row_push(const System *system, const Row *row, double impulse);   /* v += M^-1 F' impulse */
 double row_coupling(const System *system, const Row *i, const Row *j); /* J_i M^-1 F_j' */
-
-Vec contact_point(const System *system, int32_t contact); /* where it touches, in the scene's frame */
 
 static inline Row *joint_row(const System *s, int32_t k) { return &s->row[2 * k]; }
 static inline Row *contact_row(const System *s, int32_t k) { return &s->row[2 * s->joint_count + 2 * k]; }
