@@ -125,9 +125,12 @@ class Canvas:
         """
         # The arithmetic is done once for each opacity that a pixel can have, not for every pixel.
         tables = (_over([LEVELS], [value]) for value in paint(color, self.is_yuv))
-        opacities = (_sized_for(plane, mask) for plane in range(len(self.planes)))
+        masks = (_sized_for(plane, mask) for plane in range(len(self.planes)))
         self.put(
-            tuple((kept[m], added[m]) for m, (kept, added) in zip(opacities, tables, strict=True)), corner
+            tuple(
+                (kept.take(m, 0), added.take(m, 0)) for m, (kept, added) in zip(masks, tables, strict=True)
+            ),
+            corner,
         )
 
     def put(self, stamp: Stamp, corner: tuple[int, int]) -> None:
