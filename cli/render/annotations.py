@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 # Of the scale bar: from the sides, and how high it is with its text [units of the pen].
 MARGIN, TALL = 26.0, 44.0
 BELOW = 54.0  # of what stands in the upper corners already [units]
+CAPTION = 0.35  # what is written in the upper left corner is no longer [of the picture's width]
 COARSE = 4  # the room is looked at in pixels of so many of the picture's
 
 
@@ -40,9 +41,10 @@ class ScaleBar:
 
 
 def scale_bar(scene: Scene, camera: Camera, pen: Pen, ink: Sequence[Array] = ()) -> ScaleBar:
-    """A bar a tenth to a fifth of the picture's width, in the corner where it hides the least.
+    """A bar a tenth to a fifth of the picture's width, where it hides the least.
 
-    The lower left one, unless another is emptier. Bodies count as they lie at the start.
+    The lower left corner, unless another is emptier, or a place between two of them. Bodies count as they lie at
+    the start.
 
     ink: strokes [m], shape (n, 2).
     """
@@ -53,7 +55,9 @@ def scale_bar(scene: Scene, camera: Camera, pen: Pen, ink: Sequence[Array] = ())
     long = metres * camera.scale
     high, low = (BELOW + TALL) * u, height - 24 * u
     right = width - MARGIN * u - long
-    places = [(MARGIN * u, low), (right, low), (MARGIN * u, high), (right, high)]
+    corners = [(MARGIN * u, low), (right, low), (MARGIN * u, high), (right, high)]
+    between = np.linspace(CAPTION * width, right, 4)[:-1].tolist()
+    places = corners + [(x, low) for x in between] + [(x, TALL * u) for x in between]
     covered = np.zeros((height // COARSE + 1, width // COARSE + 1), np.uint8)
     outlines = [fixed(camera.pixels(np.array(body.outline())) / COARSE) for body in scene.bodies]
     for outline in outlines:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from cli.main import main
 from cli.render.animation import Extras
 from cli.render.annotations import scale_bar
-from cli.render.camera import about, fit
+from cli.render.camera import Camera, about, fit
 from cli.render.canvas import Canvas
 from cli.render.figure import Figure
 from cli.render.page import page
@@ -85,6 +85,15 @@ def test_the_scale_bar_stands_in_the_corner_where_it_hides_the_least(scene: Scen
     assert scale_bar(Scene(), camera, pen).bottom > 400
     ink = [np.array([[0.1, -0.2], [1.0, -0.2], [0.1, -0.5], [1.0, -0.5]])]
     assert scale_bar(scene, camera, pen, ink) != bar
+
+
+def test_with_every_corner_taken_the_scale_bar_stands_between_two() -> None:
+    camera = Camera((1280, 720), 100.0, (0.0, 0.0))
+    corners = [(x, y) for x in (1.5, 11.3) for y in (-0.7, -6.5)]
+    shape = {"type": "rectangle", "size": [3.0, 1.4]}
+    bodies = [{"id": f"{c}", "shape": shape, "position": c} for c in corners]
+    bar = scale_bar(Scene.from_dict({"bodies": bodies}), camera, Pen(CLEAN, camera.size))
+    assert 300 < bar.left < bar.left + bar.long < 980
 
 
 @pytest.mark.parametrize("size", [(640, 360), (64, 64), (1280, 720)])
