@@ -17,9 +17,12 @@ ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 FEW = 24  # points of a stroke: in more a corner that lies between two of them is hardly cut
 FULL = 0.95  # of the usual step: a chord that is longer is straight
 STEPS = 3  # full chords, at least, and a third of all: else the points are not in equal steps
-AGREE = 0.3  # of a step: as near as a corner lies that is reckoned from either side
-HAIRPIN, TIP = 1.9, 0.1  # where it turns by more [rad], and the two are further apart, it turns twice
-MEET = 0.4  # of a step: but where the two ways meet about a step on, it is one sharp corner
+HAIRPIN = 1.2  # within so much of turning back [rad], a corner may be two: the end of something narrow
+OFF, LONGER = 0.05, 0.1  # of a step: how far ink is off its side's line, and a way longer than straight
+CORNER = 8.0  # nats to say one more corner; but a narrow end is likelier blunt than pointed,
+POINTED = -1.0  # nats less, the more its sides are
+ALIKE = 0.1  # parallel [rad]
+HALVINGS, NEWTON = 20, 8  # steps until a corner's cut, and its place, are found
 SHORT = 0.72, 0.9  # of a step: a chord of such a length has a corner, and not two
 LEG = 0.15  # of a step: what is shorter does not say where the ink comes from
 LOOP = 4.0  # rad: what turns by more altogether goes around something, and has its corners outward
@@ -47,7 +50,8 @@ def _sharpened(points: Array) -> Array:
     The step s says how long the ink between two points is; where these are nearer, at a distance d, it turns.
     At one corner, if it comes straight from the point before: with the chord's angle f to that way, the corner is
     t = (s² - d²) / (2 (s - d cos f)) on, as the two legs make s together (law of cosines). The same holds
-    backwards from the point behind; a corner is where both agree.
+    backwards from the point behind. Where both are known, the corner is the likeliest place given either's line and
+    the step; rounded, where the two lines meet further than a step on.
     """
     at = [complex(x, y) for x, y in points.tolist()]
     chords = [b - a for a, b in pairwise(at)]
@@ -127,26 +131,75 @@ def _corners(
     if len(found) < sides:
         return ()
     if before is not None and behind is not None:
+        corner, said = min((_likeliest(before, a, b, behind, step, c) for c in found), key=lambda t: t[1])
         come, go = (a - before) / abs(a - before), (behind - b) / abs(behind - b)
-        sine = (come.conjugate() * go).imag
-        if abs(cmath.phase(go * come.conjugate())) > HAIRPIN and abs(found[0] - found[-1]) > TIP * step:
-            legs = [((b - a).conjugate() * go).imag, (come.conjugate() * (b - a)).imag]
-            legs = [leg / sine if sine else -1.0 for leg in legs]
-            if min(legs) >= 0 and abs(sum(legs) - step) < MEET * step:
-                return (a + legs[0] * come,)
-            # two corners, the end of something narrow: straight across, where both ways and it make a step
-            out = (come - go) / abs(come - go)
-            chord = (b - a) * out.conjugate()
-            rest = (step - abs(chord.imag) - chord.real) / 2
-            if not 0 <= rest <= step:
-                return ()
-            return a + (rest + chord.real) * out, b + rest * out
-    corner = sum(found) / len(found)
-    if abs(found[0] - found[-1]) > AGREE * step:
-        return ()
+        turn = cmath.phase(go * come.conjugate())
+        alike = math.pi - abs(turn)
+        if alike > HAIRPIN:
+            return _rounded(a, b, come, go, step, corner) if abs(turn) > TURN and said < CORNER else ()
+        if said < min(POINTED + 0.5 * (alike / ALIKE) ** 2, CORNER):
+            return (corner,)
+        # two corners, the end of something narrow: straight across, where both ways and it make a step
+        out = (come - go) / abs(come - go)
+        chord = (b - a) * out.conjugate()
+        rest = (step - abs(chord.imag) - chord.real) / 2
+        return (a + (rest + chord.real) * out, b + rest * out) if 0 <= rest <= step else ()
+    corner = found[0]
     turn = abs(_turn(a, corner, b))
-    sure = len(found) == 2 or turn < SPIKE or min(abs(corner - a), abs(corner - b)) < LEG * step
+    sure = turn < SPIKE or min(abs(corner - a), abs(corner - b)) < LEG * step
     return (corner,) if turn > TURN and sure else ()
+
+
+def _rounded(
+    a: complex, b: complex, come: complex, go: complex, step: float, corner: complex
+) -> tuple[complex, ...]:
+    """A corner from a to b, cut as much as makes it a step long; where it needs no cut, `corner`."""
+    sine = (come.conjugate() * go).imag
+    on, back = ((b - a).conjugate() * go).imag / sine, (come.conjugate() * (b - a)).imag / sine
+    if on < 0 or back < 0 or on + back <= step:
+        return (corner,)
+    low, high = 0.0, 1.0
+    for _ in range(HALVINGS):
+        share = (low + high) / 2
+        first, second = a + share * on * come, b - share * back * go
+        if share * (on + back) + abs(second - first) < step:
+            low = share
+        else:
+            high = share
+    return first, second
+
+
+def _likeliest(
+    before: complex, a: complex, b: complex, behind: complex, step: float, corner: complex
+) -> tuple[complex, float]:
+    """The likeliest corner between two points, a way of `step` apart, and the nats to say that the ink is so.
+
+    It lies near where the ink goes on to from either side, and the ways to it make a step (Gauss-Newton, begun
+    at `corner`).
+    """
+    said = 0.0
+    for _ in range(NEWTON):
+        off: list[tuple[float, complex]] = []  # in spreads, and the way in which it grows, by pixels
+        for far, near in ((before, a), (behind, b)):
+            way = (near - far) / abs(near - far)
+            on = (corner - near) * way.conjugate()
+            ahead = max(on.real, 0.0) / abs(near - far)
+            spread = OFF * step * math.hypot(1 + ahead, ahead)  # of a line through two points, so far beyond
+            off.append((on.imag / spread, 1j * way / spread))
+            if on.real < 0:  # not back on the way that the ink has come
+                off.append((on.real / (OFF * step), way / (OFF * step)))
+        legs = [max(abs(corner - end), 1e-9) for end in (a, b)]
+        longer = sum((corner - end) / leg for end, leg in zip((a, b), legs, strict=True))
+        off.append(((sum(legs) - step) / (LONGER * step), longer / (LONGER * step)))
+        said = sum(o * o for o, _ in off) / 2
+        down = sum(o * n for o, n in off)
+        xx, yy = (sum(x * x for x in part) for part in ([n.real for _, n in off], [n.imag for _, n in off]))
+        xy = sum(n.real * n.imag for _, n in off)
+        det = xx * yy - xy * xy
+        if det < 1e-12 * (xx + yy) ** 2:
+            break
+        corner -= complex(yy * down.real - xy * down.imag, xx * down.imag - xy * down.real) / det
+    return corner, said
 
 
 def _corner(before: complex | None, a: complex, b: complex, step: float) -> complex | None:

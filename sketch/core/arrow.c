@@ -85,7 +85,7 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
     angles[0] = atan2(left[1] - tip[1], tip[0] - left[0]);
     angles[1] = atan2(tip[1] - right[1], tip[0] - right[0]);
     for (int e = 0; e < 2; e++)
-        if (angles[e] < 0.15 || angles[e] > 1.4 || lengths[e + 1] < 0.1 * reach) return 0;
+        if (angles[e] < 0.13 || angles[e] > 1.4 || lengths[e + 1] < 0.1 * reach) return 0;
     double alike = log(lengths[1] / lengths[2]) / ALIKE;
     double size = log((lengths[1] + lengths[2]) / 2 / lengths[0] / SIZE) / SIZES;
     double spread[2] = {(angles[0] - ANGLE) / ANGLES, (angles[1] - ANGLE) / ANGLES};
