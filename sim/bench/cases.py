@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sim.bench.linkages import LINKAGES
 from sim.bench.mechanisms import MECHANISMS
 from sim.bench.parts import (
     Array,
@@ -409,4 +410,5 @@ CASES: list[Case] = [
     _tower(10),
     _tower(30),
     *MECHANISMS,
+    *LINKAGES,
 ]

@@ -1,6 +1,6 @@
 /* Motion in closed form: a body's pose and velocity as polynomials of time over a stretch.
  *
- * Free flight is a polynomial of degree 2, rest one of degree 0, and a step of the integrator one of degree 7, so that
+ * Free flight is a polynomial of degree 2, rest one of degree 0, and a step of the integrator one of degree 8, so that
  * whatever asks where a body is, or when two bodies touch, asks one kind of thing.
  */
 #ifndef MOTION_H
@@ -8,7 +8,7 @@
 
 #include "world.h"
 
-#define MOTION_DEGREE 7
+#define MOTION_DEGREE 8
 
 /* Pose and velocity of a body at one time. */
 typedef struct State {

@@ -54,7 +54,7 @@ static int place_plain(System *system) {
 /* Newton's method on the positions: the first pass leaves the square of the error. */
 static int project_positions(Smooth *s, System *system) {
     Active *active = &s->active;
-    system_store(system, s->start);
+    system_store(system, s->trial);
     double first = 0;
     for (int pass = 0; pass < 3; pass++) {
         int status = place_plain(system);
@@ -74,7 +74,7 @@ static int project_positions(Smooth *s, System *system) {
                 move(system, row->member[side], active->rows[i / 2].weight[i & 1][side], active->unknown[i]);
         }
     }
-    keep_if_small(system, s->start, first);
+    keep_if_small(system, s->trial, first);
     return SIM_OK;
 }
 
@@ -82,7 +82,7 @@ int project_velocities(Smooth *s, System *system) {
     Active *active = &s->active;
     int status = place_plain(system);
     if (status != SIM_OK) return status;
-    system_store(system, s->start);
+    system_store(system, s->trial);
     double first = 0;
     active_factor(active, system, RELAX);
     for (int pass = 0; pass < 3; pass++) {
@@ -97,7 +97,7 @@ int project_velocities(Smooth *s, System *system) {
             if (row) row_push(system, row, active->unknown[i]);
         }
     }
-    keep_if_small(system, s->start, first);
+    keep_if_small(system, s->trial, first);
     return SIM_OK;
 }
 
@@ -125,7 +125,7 @@ static bool keeps_to_constraints(const Smooth *s, const System *system) {
 int project(Smooth *s, System *system, double *left) {
     *left = 0;
     if (s->active.count == 0 || keeps_to_constraints(s, system)) return SIM_OK;
-    s->known_of = NULL;
+    s->projected = true;
     int status = project_positions(s, system);
     if (status == SIM_OK) status = project_velocities(s, system);
     *left = largest_speed(s, system);

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LOCAL 0.02            /* the part of the tolerance that one step may err by */
+#define LOCAL 0.04            /* the part of the tolerance that one step may err by */
 #define RELAX 1e-10        /* makes redundant rows solvable; refinement takes its effect away again */
 #define RELAX_MORE 1e-7    /* the same where rows that nearly repeat each other keep a step from converging */
 #define PATIENCE 3         /* tries of a step before that is taken to be so */
@@ -11,20 +11,23 @@
 #define UNSURE 0.02       /* forces that redundant contacts may share out otherwise: ask again after this time [s] */
 #define ROOT_TIME 1e-13  /* how exactly the end of a mode is found [s], and as a part of the time */
 #define SAFETY 0.9         /* of the length that would just do */
+#define FARTHEST 2.0       /* times the last step: beyond that, its start says little of a step */
 #define LONGEST 2.0       /* a step [s]: within it, the ends of contacts' modes are looked for at the stages */
 #define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
 
 int smooth_create(Smooth *s, const World *world, double tolerance, Slack slack) {
     *s = (Smooth){.tolerance = tolerance, .slack = slack};
     size_t n = 6 * (size_t)world->body_count;
-    double *block = malloc((ALL_STAGES + DENSE + 4) * n * sizeof *block);
+    double *block = malloc((ALL_STAGES + DENSE + 6) * n * sizeof *block);
     if (!block) return SIM_OUT_OF_MEMORY;
     s->block = s->start = block;
-    s->trial = block + n;
-    s->end = block + 2 * n;
-    s->acceleration = block + 3 * n;
-    for (size_t i = 0; i < ALL_STAGES; i++) s->k[i] = block + (4 + i) * n;
-    for (size_t i = 0; i < DENSE; i++) s->dense[i] = block + (4 + ALL_STAGES + i) * n;
+    s->before = block + n;
+    s->trial = block + 2 * n;
+    s->end = block + 3 * n;
+    s->acceleration = block + 4 * n;
+    s->slopes_before = block + 5 * n;
+    for (size_t i = 0; i < ALL_STAGES; i++) s->k[i] = block + (6 + i) * n;
+    for (size_t i = 0; i < DENSE; i++) s->dense[i] = block + (6 + ALL_STAGES + i) * n;
     return SIM_OK;
 }
 
@@ -165,27 +168,63 @@ static double step_error(const Smooth *s, const System *system, double h) {
     return h * fifth / sqrt((fifth + 0.01 * third)); /* not averaged over components: each must keep to it */
 }
 
-/* The dense output's terms of higher order, of all components. */
-static void find_dense(const Smooth *s, double h, int32_t n) {
-    for (int i = 0; i < DENSE; i++) combine(s, DOP853_D[i], ALL_STAGES, h, NULL, n, s->dense[i]);
+/* The step as polynomials in the part of it that has passed, from stages that are made for that. */
+static int find_dense(Smooth *s, System *system, double h, Motion *motion) {
+    int status = SIM_OK;
+    for (int i = STAGES + 1; i < ALL_STAGES && status == SIM_OK; i++) status = stage(s, system, i, h);
+    for (int i = 0; i < DENSE; i++) combine(s, DOP853_D[i], ALL_STAGES, h, NULL, 6 * system->count, s->dense[i]);
+    for (int32_t c = 0; c < 6 * system->count; c++) {
+        Motion *m = &motion[c / 6];
+        double delta = s->end[c] - s->start[c], *p = c % 6 < 3 ? m->q[c % 6] : m->v[c % 6 - 3];
+        double F[3 + DENSE] = {delta, h * s->k[0][c] - delta, 2 * delta - h * (s->k[STAGES][c] + s->k[0][c])};
+        for (int i = 0; i < DENSE; i++) F[3 + i] = s->dense[i][c];
+        memset(p, 0, sizeof m->q[0]);
+        for (int i = 2 + DENSE; i >= 0; i--) { /* p := (p + F[i]) times x, or times 1 - x */
+            p[0] += F[i];
+            for (int d = MOTION_DEGREE; d >= 0; d--) {
+                double below = d > 0 ? p[d - 1] : 0;
+                p[d] = i % 2 == 0 ? below : p[d] - below;
+            }
+        }
+        p[0] += s->start[c];
+    }
+    return status;
 }
 
-/* The dense output of one component as a polynomial in the part of the step that has passed. */
-static void dense(const Smooth *s, int32_t c, double h, double *out) {
-    double F[7], delta = s->end[c] - s->start[c], p[MOTION_DEGREE + 1] = {0};
-    F[0] = delta;
-    F[1] = h * s->k[0][c] - delta;
-    F[2] = 2 * delta - h * (s->k[STAGES][c] + s->k[0][c]);
-    for (int i = 0; i < DENSE; i++) F[3 + i] = s->dense[i][c];
-    for (int i = 6; i >= 0; i--) { /* p := (p + F[i]) times x, or times 1 - x */
-        p[0] += F[i];
-        for (int d = MOTION_DEGREE; d >= 0; d--) {
-            double below = d > 0 ? p[d - 1] : 0;
-            p[d] = i % 2 == 0 ? below : p[d] - below;
+/* The polynomial with value, slope and second derivative `at` 0, 1 and -r: Hermite's of the first two, and u^3 times what is
+ * quadratic, which those do not feel, with u = x (x - 1). */
+static void interpolate(const double at[3][3], double r, double *p) {
+    double d = at[1][0] - at[0][0] - at[0][1] - at[0][2] / 2, e = at[1][1] - at[0][1] - at[0][2],
+           f = at[1][2] - at[0][2];
+    double c[] = {
+        at[0][0], at[0][1], at[0][2] / 2, 10 * d - 4 * e + f / 2, 7 * e - 15 * d - f, 6 * d - 3 * e + f / 2, 0, 0, 0};
+    double off = at[2][0], slope = at[2][1], bend = at[2][2], x = 1; /* what at -r is not as wanted */
+    for (int k = 0; k <= 5; k++, x *= -r) off -= c[k] * x;
+    x = 1;
+    for (int k = 1; k <= 5; k++, x *= -r) slope -= k * c[k] * x;
+    x = 1;
+    for (int k = 2; k <= 5; k++, x *= -r) bend -= k * (k - 1) * c[k] * x;
+    double u = r * (1 + r), du = -(1 + 2 * r), w = u * u * u, dw = 3 * u * u * du, ddw = 6 * u * (du * du + u);
+    double g = off / w, dg = (slope - dw * g) / w, ddg = (bend - 2 * dw * dg - ddw * g) / w; /* the quadratic, there */
+    double g2 = ddg / 2, g1 = dg + 2 * g2 * r, g0 = g + g1 * r - g2 * r * r;
+    c[3] -= g0, c[4] += 3 * g0 - g1, c[5] += 3 * g1 - 3 * g0 - g2;
+    c[6] = g0 - 3 * g1 + 3 * g2, c[7] = g1 - 3 * g2, c[8] = g2;
+    memcpy(p, c, sizeof c);
+}
+
+/* The same of a step that goes on from one of length `last`: through its ends and the start of the last one, each with speeds and
+ * accelerations.  Positions are as good as the above, and free; speeds, their slopes, are somewhat worse within the step. */
+static void continue_dense(const Smooth *s, const System *system, double h, double last, Motion *motion) {
+    for (int32_t i = 0; i < system->count; i++)
+        for (int c = 0; c < 3; c++) {
+            int32_t q = 6 * i + c, v = q + 3;
+            const double at[3][3] = {{s->start[q], h * s->start[v], h * h * s->k[0][v]},
+                                     {s->end[q], h * s->end[v], h * h * s->k[STAGES][v]},
+                                     {s->before[q], h * s->before[v], h * h * s->slopes_before[v]}};
+            interpolate(at, last / h, motion[i].q[c]);
+            for (int d = 0; d < MOTION_DEGREE; d++) motion[i].v[c][d] = (d + 1) * motion[i].q[c][d + 1] / h;
+            motion[i].v[c][MOTION_DEGREE] = 0;
         }
-    }
-    p[0] += s->start[c];
-    memcpy(out, p, sizeof p);
 }
 
 static bool sticks(const Contact *c) { return c->active && c->slide == 0 && c->friction > 0; }
@@ -319,35 +358,31 @@ static double next_length(const Pace *pace, double step, double error) {
     return step * fmin(fmax(factor, 0.2), 8);
 }
 
-/* The slopes at the start: those at the end of the island's last step, if it has not been moved since. */
-static int find_first_slopes(Smooth *s, System *system, double from, const Pace *pace) {
-    bool known = s->known_of == pace && s->known_at == from && pace->last > 0 && system->contact_count == 0;
-    s->known_of = NULL;
-    if (!known) return derive(s, system, s->start, s->k[0]);
-    double *first = s->k[0];
-    s->k[0] = s->k[STAGES];
-    s->k[STAGES] = first;
-    return SIM_OK;
-}
-
-int smooth_step(Smooth *s, System *system, double from, Pace *pace, Motion *motion, bool *ended) {
-    int32_t n = 6 * system->count;
+/* Begin a step where the system is: what was the last one becomes what was before, and where it goes on as that ended, the slopes
+ * are known. */
+static int begin(Smooth *s, System *system, bool goes_on) {
+    double *before = s->before, *slopes = s->slopes_before;
+    s->before = s->start, s->start = before;
+    s->slopes_before = s->k[0], s->k[0] = s->k[STAGES], s->k[STAGES] = slopes;
     system_store(system, s->start);
     find_softness(s, system);
-    int status = find_first_slopes(s, system, from, pace);
-    double scale = force_scale(system), broken = INFINITY, step; /* the part of it where the modes may end */
-    bool unsure = find_unsure(s, system, scale);
-    if (unsure) pace->step = fmin(pace->step, UNSURE);
+    bool known = goes_on && !s->projected && system->contact_count == 0;
+    return known ? SIM_OK : derive(s, system, s->start, s->k[0]);
+}
+
+/* Make the stages of a step of the length to try, and of shorter ones until the error is allowed.  *broken becomes the part of the
+ * step at which a mode seems to have ended, or stays INFINITY. */
+static int make_stages(Smooth *s, System *system, Pace *pace, double scale, double *broken) {
+    int status = SIM_OK;
     for (int tries = 0;; tries++) {
-        step = fmin(pace->step, LONGEST);
-        broken = INFINITY;
+        double step = fmin(pace->step, LONGEST);
+        *broken = INFINITY;
         for (int i = 1; i < STAGES && status == SIM_OK; i++) {
             status = stage(s, system, i, step);
-            if (modes_margin(s, system, scale) < 0) broken = fmin(broken, DOP853_C[i]);
+            if (modes_margin(s, system, scale) < 0) *broken = fmin(*broken, DOP853_C[i]);
         }
         if (status != SIM_OK) return status;
-        double error = step_error(s, system, step);
-        double next = next_length(pace, step, error);
+        double error = step_error(s, system, step), next = next_length(pace, step, error);
         pace->step = tries > 0 ? fmin(next, step) : next;
         if (error <= 1 || step < 1e-12) {
             pace->last = step, pace->error = error;
@@ -355,32 +390,48 @@ int smooth_step(Smooth *s, System *system, double from, Pace *pace, Motion *moti
         }
         if (tries == PATIENCE) s->relax = RELAX_MORE;
     }
-    combine(s, DOP853_B, STAGES, step, s->start, n, s->end);
+    combine(s, DOP853_B, STAGES, pace->last, s->start, 6 * system->count, s->end);
     status = derive(s, system, s->end, s->k[STAGES]);
-    if (modes_margin(s, system, scale) < 0) broken = fmin(broken, 1);
-    for (int i = STAGES + 1; i < ALL_STAGES && status == SIM_OK; i++) status = stage(s, system, i, step);
-    find_dense(s, step, n);
-    for (int32_t i = 0; i < system->count; i++) {
-        Motion *m = &motion[i];
-        *m = (Motion){.start = from, .end = from + step, .span = step, .degree = MOTION_DEGREE};
-        for (int c = 0; c < 3; c++) {
-            dense(s, 6 * i + c, step, m->q[c]);
-            dense(s, 6 * i + 3 + c, step, m->v[c]);
-        }
-        m->speed = motion_fastest(m);
-    }
-    pace->relax = s->relax;
-    s->known_of = pace;
-    s->known_at = from + step;
-    *ended = unsure;
-    if (broken <= 1) {
-        double sound = 0;
-        for (int i = 1; i < STAGES; i++)
-            if (DOP853_C[i] < broken) sound = fmax(sound, DOP853_C[i]);
-        double stop = find_end_of_modes(s, system, motion, from + step * sound, scale);
-        *ended = unsure || stop <= from + step;
-        if (stop <= from + step)
-            for (int32_t i = 0; i < system->count; i++) motion[i].end = stop;
-    }
+    if (modes_margin(s, system, scale) < 0) *broken = fmin(*broken, 1);
     return status;
+}
+
+/* The step as motions of the members. It goes on from one of length `last`, or from none: 0. */
+static int make_motions(Smooth *s, System *system, double from, double step, double last, Motion *motion) {
+    int status = SIM_OK;
+    for (int32_t i = 0; i < system->count; i++)
+        motion[i] = (Motion){.start = from, .end = from + step, .span = step, .degree = MOTION_DEGREE};
+    if (step <= FARTHEST * last && system->contact_count == 0) /* contacts' modes end within steps */
+        continue_dense(s, system, step, last, motion);
+    else
+        status = find_dense(s, system, step, motion);
+    for (int32_t i = 0; i < system->count; i++) motion[i].speed = motion_fastest(&motion[i]);
+    return status;
+}
+
+int smooth_step(Smooth *s, System *system, double from, Pace *pace, Motion *motion, bool *ended) {
+    bool goes_on = s->latest == pace && s->latest_end == from && pace->last > 0;
+    double last = goes_on ? pace->last : 0, broken;
+    s->latest = NULL;
+    int status = begin(s, system, goes_on);
+    double scale = force_scale(system);
+    bool unsure = find_unsure(s, system, scale);
+    if (unsure) pace->step = fmin(pace->step, UNSURE);
+    if (status == SIM_OK) status = make_stages(s, system, pace, scale, &broken);
+    if (status == SIM_OK) status = make_motions(s, system, from, pace->last, last, motion);
+    if (status != SIM_OK) return status;
+    pace->relax = s->relax;
+    s->latest = pace;
+    s->latest_end = from + pace->last;
+    s->projected = false;
+    *ended = unsure;
+    if (broken > 1) return SIM_OK;
+    double sound = 0;
+    for (int i = 1; i < STAGES; i++)
+        if (DOP853_C[i] < broken) sound = fmax(sound, DOP853_C[i]);
+    double stop = find_end_of_modes(s, system, motion, from + pace->last * sound, scale);
+    if (stop > s->latest_end) return SIM_OK;
+    for (int32_t i = 0; i < system->count; i++) motion[i].end = stop;
+    *ended = true;
+    return SIM_OK;
 }

@@ -14,13 +14,15 @@ typedef struct Pace {
 
 typedef struct Smooth {
     double *block;                                                /* that holds these: */
-    double *start, *trial, *end, *k[ALL_STAGES], *dense[DENSE]; /* 6 numbers a member */
+    double *start, *before, *trial, *end;                         /* 6 numbers a member */
+    double *slopes_before, *k[ALL_STAGES], *dense[DENSE]; /* likewise */
     double *acceleration;                        /* 3 a member */
     Active active;
     double tolerance;
     double relax;         /* of the island at hand */
-    const Pace *known_of; /* whose slopes at the time known_at are those of stage STAGES; NULL: nobody's */
-    double known_at;
+    const Pace *latest;   /* whose step was the last one, which began at `before`; NULL: nobody's */
+    double latest_end;    /* [s] */
+    bool projected;       /* since then */
     Slack slack;
     double evals, rows; /* counted for the profile */
 } Smooth;
