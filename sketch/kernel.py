@@ -44,7 +44,7 @@ SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/
 COURSE, HEADS = 32, 4  # as in core/course.c and core/heads.c
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 8)(
+_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 9)(
     ("ink_closed", _lib)
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
@@ -105,6 +105,8 @@ class ClosedFit(NamedTuple):
         corners: of those polygons [pixels], (SIDES + 1, SIDES, 2).
         rectangle: the nearest to the quadrilateral [pixels], (4, 2).  extra: what it adds to residual[4]; infinite
             for none.
+        turning: how much of the ink's turning is at the corners of the k-gon, from 0, where it turns evenly, to 1; for
+            k from 5 to 7.
     """
 
     mean: Array
@@ -120,6 +122,7 @@ class ClosedFit(NamedTuple):
     corners: Array
     rectangle: Array
     extra: float
+    turning: Array
 
     def vertices(self, sides: int) -> Array:
         """Corners of the best polygon of so many sides [pixels], (sides, 2)."""
@@ -158,7 +161,16 @@ class ArrowFit(NamedTuple):
     off: list[float]
 
 
-_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1), 9)  # of ink_closed's results, in order
+_COUNTS = (
+    10,
+    2,
+    10,
+    SIDES + 1,
+    SIDES + 1,
+    2 * SIDES * (SIDES + 1),
+    9,
+    SIDES + 1,
+)  # of ink_closed's results, in order
 _OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
 
 
@@ -205,7 +217,7 @@ def fit_closed(
         hopeless,
         *[at + 8 * o for o in _OFFSETS],
     )
-    _, length, conic, residual, cost, corners, rectangle, rest = _OFFSETS
+    _, length, conic, residual, cost, corners, rectangle, turning, rest = _OFFSETS
     scalars = out[:corners].tolist()
     return ClosedFit(
         mean=out[0:2],
@@ -219,8 +231,9 @@ def fit_closed(
         residual=scalars[residual:cost],
         cost=scalars[cost:],
         corners=out[corners:rectangle].reshape(SIDES + 1, SIDES, 2),
-        rectangle=out[rectangle + 1 : rest].reshape(4, 2).copy(),
+        rectangle=out[rectangle + 1 : turning].reshape(4, 2).copy(),
         extra=float(out[rectangle]),
+        turning=out[turning:rest],
     )
 
 

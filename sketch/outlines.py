@@ -20,6 +20,7 @@ __all__ = ["LEAST_AXIS", "gone_over", "read_outline"]
 Array = NDArray[np.float64]
 
 MOST_SIDES = 12
+FEWEST, MOST = 5, 7  # sides of polygons that are nearly round, as in core/outline.c
 ROUND = 39.5  # nats that a round outline is rarer than its three parameters say
 CORNER = 4.0  # nats to say a corner's coordinate, given those before: less than a free parameter
 USUAL = {3: 2.0, 4: 4.0}  # nats that triangles and quadrilaterals are commoner than other polygons
@@ -27,6 +28,8 @@ IRREGULAR = 6.0  # nats that a quadrilateral is rarer of which no two sides are 
 ALIKE = 0.1  # to within this [rad]
 BOX = 17.0  # nats to say a rectangle: five parameters, and that it is the commonest thing drawn
 UNROUND = 0.115  # usual log of a drawn circle's length over its width, either way: nobody's circles are round
+EVENLY = 0.4  # usual share of a round outline's turning that is at a polygon's corners, beyond what is there anyway;
+TURNING = 0.12  # and how much either differs from that: all of a polygon's turning is
 ELLIPSE = 7.5  # nats that an ellipse takes beyond a circle: with 1.6 times as long as wide it is either
 FREEFORM = 32.0  # nats that an outline of any course, a hill or a cloud, is rarer than a polygon,
 ARC = 9.0  # and nats to say each of the arcs that it goes in: a bow beside the corner
@@ -89,13 +92,14 @@ def _read(
     (p, q), (r, s) = fit.back.tolist()
     scale, narrow = math.sqrt(abs(p * s - q * r)), min(math.hypot(p, r), math.hypot(q, s))
     fitted = partial(Fitted, pieces=names, scale=scale, narrow=narrow, gap=fit.gap / fit.ink)
-    out = _round(fit, fitted, gaps)
     said = _SAID.copy()
     if math.isfinite(fit.cost[4]):
         said[4] += min(0.5 * (_unlike(fit.vertices(4)) / ALIKE) ** 2, IRREGULAR)
     sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + said[k])
+    evenly, straight = _turning(fit, sides)
+    out = _round(fit, fitted, gaps + evenly)
     if math.isfinite(fit.cost[sides]):
-        cost = fit.cost[sides] + said[sides] + gaps
+        cost = fit.cost[sides] + said[sides] + gaps + straight
         out.append(fitted("polygon", cost=cost, outline=fit.vertices(sides), rough=fit.cost[sides]))
     if math.isfinite(fit.extra):
         off = fit.residual[4]
@@ -109,6 +113,17 @@ def _read(
         if course is not None and is_simple(course):
             out.append(fitted("free", cost=bent, outline=course))
     return out
+
+
+def _turning(fit: ClosedFit, sides: int) -> tuple[float, float]:
+    """Nats to say how much of the ink's turning is at a polygon's corners, of something round and of the polygon.
+
+    Of few corners the distances tell enough, and beside many nothing is left to turn.
+    """
+    if not FEWEST <= sides <= MOST or not math.isfinite(fit.cost[sides]):
+        return 0.0, 0.0
+    turning = min(max(float(fit.turning[sides]), EVENLY), 1.0)
+    return 0.5 * ((turning - EVENLY) / TURNING) ** 2, 0.5 * ((1 - turning) / TURNING) ** 2
 
 
 def _unlike(corners: Array) -> float:

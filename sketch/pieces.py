@@ -235,4 +235,5 @@ def _piece(
 
 
 def _observations(length: float, extent: float, dot: float) -> float:
-    return OBSERVATIONS * length / (math.pi * max(extent, dot))
+    tap = min(2 * extent / dot, 1.0) if dot else 1.0  # in half of a dot how the pen trembled says nothing
+    return tap * OBSERVATIONS * length / (math.pi * max(extent, dot))

@@ -29,7 +29,10 @@ TREMOR = 0.05  # spread of ink about what was meant, as a share of its size; of 
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius; as in core/outline.c
 PARAMETER = 4.0  # nats to say one parameter to that precision: about ln(page / tremor)
 FREE = 4.0  # nats an observation to say ink freely, point by point
-STRANGE = 35.0  # nats to say that something was drawn that has no meaning here
+STRANGE = 35.0  # nats to say that something was drawn that has no meaning here,
+LINE = (
+    11.0  # and was as much as a straight line: so many observations; a tap of the pen is less of a surprise
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +92,7 @@ def unread(piece: Piece) -> float:
         if said >= best:
             break
         best = min(best, said + misfit_of(piece, piece.residual[k]))
-    return STRANGE + best
+    return STRANGE * min(piece.observations / LINE, 1.0) + best
 
 
 def misfit(mean_square: float, count: float) -> float:

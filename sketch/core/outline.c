@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { FEWEST = 5, MOST = 7 }; /* sides of a polygon that may be taken for something round, and is none */
+
 typedef struct {
     double mean[2];
     double to[4];   /* normal = to * (pixel - mean), row major */
@@ -301,6 +303,33 @@ static void best_polygons(const Runs *r, const double *factor, int way, double s
     }
 }
 
+/* How much of the ink's turning is at the corners of its k-gon: 1 where sides are straight, 0 where it turns evenly. At a
+ * corner the ink's directions a few samples before and behind it are compared, so that a rounded one counts as well. */
+static double turning(const Runs *r, const double stretch[2], const double *corners, int k) {
+    double x[SAMPLES], y[SAMPLES], area = 0, sum = 0, even = 4.0 * k / SAMPLES;
+    for (int i = 0; i < SAMPLES; i++) {
+        x[i] = r->x[i] / stretch[0];
+        y[i] = r->y[i] / stretch[1];
+    }
+    for (int i = 0, j = SAMPLES - 1; i < SAMPLES; j = i++) area += x[j] * y[i] - x[i] * y[j];
+    for (int q = 0; q < k; q++) {
+        double best = INFINITY;
+        int at = 0;
+        for (int i = 0; i < SAMPLES; i++) {
+            double dx = x[i] - corners[2 * q], dy = y[i] - corners[2 * q + 1], d2 = dx * dx + dy * dy;
+            if (d2 < best) {
+                best = d2;
+                at = i + SAMPLES;
+            }
+        }
+        int a = (at - 3) % SAMPLES, b = (at - 1) % SAMPLES, c = (at + 1) % SAMPLES, d = (at + 3) % SAMPLES;
+        double ux = x[b] - x[a], uy = y[b] - y[a], vx = x[d] - x[c], vy = y[d] - y[c];
+        double turn = atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+        sum += fmin(fmax(area < 0 ? -turn : turn, 0), 3 * PI / k); /* ink that turns back is no corner */
+    }
+    return (sum / (2 * PI) - even) / (1 - even);
+}
+
 /* Fit the readings of a closed chain of ink.
  *
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
@@ -312,10 +341,11 @@ static void best_polygons(const Runs *r, const double *factor, int way, double s
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds;
  * residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed sides, flat
  * corners and short sides; vertices[k][SIDES][2] [pixels]; rectangle: what the nearest adds to residual[4], infinite for none,
- * and its corners (8) [pixels]. */
+ * and its corners (8) [pixels]; turning[k]: how much of the ink's turning is at the corners of the k-gon, for k from FEWEST to MOST. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
                         double observations, double side, double hopeless, double *frame, double *length, double *round,
-                        double *residual, double *cost, double *vertices, double *rectangle, double *scratch) {
+                        double *residual, double *cost, double *vertices, double *rectangle, double *turned,
+                        double *scratch) {
     int n = part_end[parts - 1];
     Frame f = normal_frame(xy, n, least_axis);
     memcpy(frame, f.mean, sizeof f.mean);
@@ -357,6 +387,9 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, side, hopeless, residual,
                       cost, vertices);
     }
+    for (int k = 0; k <= SIDES; k++) turned[k] = 0;
+    for (int k = FEWEST; k <= MOST; k++)
+        if (isfinite(cost[k])) turned[k] = turning(&r, stretch, vertices + 2 * SIDES * k, k);
     for (int k = 3; k <= SIDES; k++)
         for (int q = 0; q < k && isfinite(cost[k]); q++) {
             double *v = vertices + 2 * (SIDES * k + q), x = v[0], y = v[1];

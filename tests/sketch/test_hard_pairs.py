@@ -70,6 +70,17 @@ def test_a_hasty_circle_is_a_circle(angle: float) -> None:
     assert kinds(read([np.array(turned(ink.tolist(), angle, (300, 300)))])) == ["circle"]
 
 
+@pytest.mark.parametrize("angle", [0.1, 0.35, 0.6])
+@pytest.mark.parametrize("size", [30, 110, 200])
+def test_a_hexagon_of_rounded_corners_is_no_circle(size: float, angle: float) -> None:
+    from dataclasses import replace
+
+    for seed in range(6):
+        hand = replace(HANDS["neat"], rounding=0.2, parts=(1,))
+        corners = turned(ngon(6, 0, 0, size), angle, (400, 300))
+        assert kinds(read(outline(corners, hand, np.random.default_rng(seed)))) == ["6-gon"]
+
+
 @hands
 def test_rectangle_trapezoid_parallelogram(hand, rng) -> None:
     straight = read(outline(box(300, 300, 240, 130, 0.2), hand, rng)).readings[0]
@@ -133,6 +144,17 @@ def test_an_x_anchors_and_crossing_bars_do_not(hand, rng) -> None:
     rods = read(line([(100, 100), (420, 300)], hand, rng), line([(120, 310), (400, 90)], hand, rng))
     assert kinds(rods) == ["bar", "bar"]
     assert not any(b.anchored for b in rods.scene.bodies)
+
+
+def test_a_tap_is_no_anchor() -> None:
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        body = outline(box(400, 300, 300, 180), HANDS["neat"], rng)
+        tap = rng.normal((400, 300), 0.6, (4, 2))
+        found = read(body, [tap])
+        assert kinds(found) == ["4-gon", "unread"]
+        assert not found.scene.bodies[0].anchored
+        assert "left out" in " ".join(found.scene.notes)
 
 
 @hands
