@@ -106,9 +106,10 @@ static bool is_held(const Search *s, const Feature *f, const Gap *g, const Place
 
 /* A point that touches and hardly moves matters again when it has gone in by half the slack.  One that is in already
  * matters as soon as it goes on in: farther, the contact would have to lift it, and a body that rocks never rest. */
-static double grazing_step(const Slack *slack, double gap, double steer) {
-    double room = gap > -0.25 * slack->gap ? gap + 0.5 * slack->gap : 1e-3 * slack->gap;
-    return fmax(safe_step(room, 0, steer), 1e-9);
+static double room_of(const Slack *slack, const Gap *g) {
+    if (g->gap > slack->gap || fabs(g->rate) > slack->speed)
+        return fmax(g->gap, 0); /* clear, or on its way in or out */
+    return g->gap > -0.25 * slack->gap ? g->gap + 0.5 * slack->gap : 1e-3 * slack->gap;
 }
 
 /* The gap's second derivative: what the bodies' accelerations do along the normal, and what comes from their velocities. */
@@ -133,10 +134,10 @@ static double feature_step(const Slack *slack, const Gap *g, const PairBound *bo
     if (aside <= 0 && in_front && g->gap <= slack->root && g->rate < -slack->speed) return 0;
     if (aside <= 0 && in_front && g->gap < -0.25 * slack->gap && g->rate < -1e-6 * slack->speed) return 0;
     double step;
-    if (g->gap > slack->gap || (in_front && fabs(g->rate) > slack->speed)) /* clear, or on its way in or out */
-        step = safe_step(fmax(g->gap, 0), g->rate, steer);
+    if (g->gap > slack->gap || (in_front && fabs(g->rate) > slack->speed))
+        step = safe_step(room_of(slack, g), g->rate, steer);
     else if (in_front)
-        step = grazing_step(slack, g->gap, steer);
+        step = fmax(safe_step(room_of(slack, g), 0, steer), 1e-9);
     else /* behind the side: it has to come in front of it first */
         step = fmax(safe_step(-g->gap, -g->rate, steer), 1e-5);
     return fmax(step, until_margin);
@@ -158,14 +159,18 @@ static double veer_of(const PairBound *bound, const Feature *f, const Gap *g, bo
     return bound->jerk + 3 * turning * (bound->points + turning * bound->closing);
 }
 
-/* gap + rate dt + dt^2 / 2 (acceleration - veer dt / 3) is no less than the gap for so long, when the rate is not negative. */
-static double parting_step(double acceleration, double veer) {
-    return acceleration > 0 ? 3 * acceleration / fmax(veer, 1e-300) : 0;
+/* room + rate dt + acceleration dt^2 / 2 - veer dt^3 / 6 is not negative for so long: what falls of it may take half of
+ * the room each. */
+static double third_order_step(double room, double rate, double acceleration, double veer) {
+    double step = veer == 0 ? INFINITY : acceleration > 0 ? 3 * acceleration / veer : 0;
+    if (rate < 0) step = fmin(step, 0.5 * room / -rate);
+    return acceleration < 0 ? fmin(step, sqrt(room / -acceleration)) : step;
 }
 
-/* The safe step of all features of two shapes. */
+/* The safe step of all features of two shapes; *parting says whether what keeps it short parts already, but slowly. */
 static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, const Placed *pa, const Placed *pb,
-                          const PairBound *bound, double passing, double time, double step, bool begins) {
+                          const PairBound *bound, double passing, double time, double step, bool begins,
+                          bool *parting) {
     FeatureWalk walk = walk_features(s->world, shape_a, pa->at, shape_b, pb->at);
     for (Feature f; step > 0;) {
         double way = (1 + 1e-9) * step * bound->passing + s->slack->gap; /* what is farther cannot touch in the step */
@@ -178,15 +183,22 @@ static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, con
         double steer =
             f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
         double own = feature_step(s->slack, &g, bound, steer);
-        if (g.rate >= 0 && g.gap > -s->slack->deep && own < SLOW * step) /* parts, but slowly at first */
-            own = fmax(own, parting_step(gap_acceleration(s, &f, &g, pa, pb, time), veer_of(bound, &f, &g, a_first)));
+        bool parts = false; /* but slowly at first */
+        bool slow = g.rate >= 0 || (own > 0 && g.rate >= -s->slack->speed);
+        if (slow && g.gap > -s->slack->deep && own < SLOW * step) {
+            double acceleration = gap_acceleration(s, &f, &g, pa, pb, time), veer = veer_of(bound, &f, &g, a_first);
+            parts = acceleration > 0 && veer > 0;
+            own = fmax(own, third_order_step(room_of(s->slack, &g), g.rate, acceleration, veer));
+        }
         const Placed *point_of = a_first ? pa : pb, *side_of = a_first ? pb : pa;
         if (own <= 0 && g.rate >= -s->slack->speed) /* on its way in, slowly: unless it turns round at once */
             own = turning_step(s->slack, &g, gap_acceleration(s, &f, &g, pa, pb, time), steer, begins);
         if (own <= 0 && !feature_faces(s->world, &f, &g, point_of, side_of, s->slack)) own = passing;
         if (own < passing && is_held(s, &f, &g, pa, pb)) own = passing;
         if (g.gap < -s->slack->gap && g.margin < -s->slack->gap) own = fmax(own, passing); /* in behind, and beside */
-        step = fmin(step, own);
+        if (own >= step) continue;
+        step = own;
+        *parting = parts;
     }
     return step;
 }
@@ -215,10 +227,15 @@ static bool stays_clear(const Search *s, const Shape *a, const Shape *b, double 
     return !boxes_meet(&way, &box);
 }
 
+/* How far a shape's points are from the centre of mass of the body that carries it; a circle's one point is its centre. */
+static double arm_of(const World *world, const Shape *shape) {
+    return shape->count == 1 ? vlength(world->vertex[shape->first]) : vlength(shape->centre) + shape->reach;
+}
+
 static double search_shapes(const Search *s, int32_t shape_a, int32_t shape_b, double from, double to) {
     const Shape *a = &s->world->shape[shape_a], *b = &s->world->shape[shape_b];
     if (stays_clear(s, a, b, from, to)) return INFINITY;
-    double t = from, horizon = from, ra = vlength(a->centre) + a->reach, rb = vlength(b->centre) + b->reach;
+    double t = from, horizon = from, ahead = to - from, ra = arm_of(s->world, a), rb = arm_of(s->world, b);
     PairBound bound = {0};
     for (int32_t steps = 0; steps < MAX_STEPS; steps++) {
         *s->steps += 1;
@@ -226,16 +243,24 @@ static double search_shapes(const Search *s, int32_t shape_a, int32_t shape_b, d
         Placed pa = placed(&state_a), pb = placed(&state_b);
         double apart = disks_apart(a, &pa, b, &pb);
         if (t >= horizon) {
-            horizon = look_ahead(s->a.motion, s->b.motion, t, to);
+            horizon = look_ahead(s->a.motion, s->b.motion, t, fmin(to, t + ahead));
+            ahead *= 4;
             bound = pair_bound(s->a.motion, ra, s->b.motion, rb, apart + 2 * (a->reach + b->reach), t, horizon);
             if (bound.closing == 0) return INFINITY;
         }
         if (t == from && apart <= 0 && shapes_too_deep(s->world, shape_a, pa.at, shape_b, pb.at, s->slack)) return t;
         double step = horizon - t;
+        bool parting = false;
         if (apart <=
             step * bound.closing) /* what passes by once mostly goes on to: longer steps, the longer it lasts */
-            step = shapes_step(s, shape_a, shape_b, &pa, &pb, &bound, PASSING * (1 + steps), t, step, t == from);
+            step =
+                shapes_step(s, shape_a, shape_b, &pa, &pb, &bound, PASSING * (1 + steps), t, step, t == from, &parting);
         if (step <= 0) return t;
+        if (parting && step < SLOW * (horizon - t)) { /* bounds are the closer, the less far they look ahead */
+            ahead = SLOW * (horizon - t);
+            horizon = t;
+            continue;
+        }
         if (steps > PATIENCE)
             step = fmax(step, 0.5 * s->slack->gap / bound.closing); /* creeping: half a slack at least */
         if (t + step >= to) return INFINITY;
