@@ -2,7 +2,8 @@
 
 The truth of a case is a function of the sample times that gives the poses of its moving bodies.  Flight,
 impacts, every regime of friction, rolling, pivots and rest are each there alone, so that an error in one can
-be told from an error in another; mechanisms.py has those in which one turns into another.
+be told from an error in another; linkages.py, mechanisms.py and slipping.py have more, and those in which one
+turns into another.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from sim.bench.parts import (
     make_scene,
     poses,
 )
+from sim.bench.slipping import SLIPPING
 from sim.scene import Joint, Scene
 
 __all__ = ["CASES", "Case", "case_error"]
@@ -411,4 +413,5 @@ CASES: list[Case] = [
     _tower(30),
     *MECHANISMS,
     *LINKAGES,
+    *SLIPPING,
 ]

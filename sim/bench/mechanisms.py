@@ -11,9 +11,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.bench.parts import Array, Case, G, make_box, make_disk, make_ground, make_scene, poses
+from sim.bench.phases import Phases
 from sim.scene import Body, Joint, Polygon
 
 __all__ = ["MECHANISMS"]
@@ -21,46 +21,6 @@ __all__ = ["MECHANISMS"]
 Curve = Callable[
     [float], tuple[tuple[float, float], tuple[float, float]]
 ]  # q to the first and second derivative of c
-Event = Callable[[float, Array], float]
-
-
-class _Phases:
-    """Stretches of motion, each an ODE until its event, and the states between at the sample times."""
-
-    def __init__(self, times: Array) -> None:
-        self.times = times
-        self.now = 0.0
-        self.done = False
-        self._parts: list[tuple[NDArray[np.bool_], Array]] = []
-
-    def run(self, slope: Callable[[float, Array], Array], start: Array, *events: Event) -> Array:
-        """Solve until the first of the events that goes from above to below 0, or the last sample; the state there."""
-        from scipy.integrate import solve_ivp
-
-        for event in events:
-            event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
-        end = float(self.times[-1])
-        if self.now >= end:
-            self.done = True
-            return start
-        run = solve_ivp(
-            slope,
-            (self.now, end),
-            start,
-            method="DOP853",
-            rtol=1e-12,
-            atol=1e-13,
-            events=events or None,
-            dense_output=True,
-        )
-        stop = float(run.t[-1])
-        here = (self.times >= self.now) & (self.times <= stop)
-        self._parts.append((here, run.sol(self.times[here]).T))
-        self.now, self.done = stop, run.status == 0
-        return np.asarray(run.y[:, -1])
-
-    def states(self) -> list[tuple[NDArray[np.bool_], Array]]:
-        return self._parts
 
 
 def _one_freedom(m: float, moment: float, curve: Curve) -> Callable[[float, Array], Array]:
@@ -103,7 +63,7 @@ def _ladder() -> Case:
         return np.array([y[1], -m * y1 * (y2 * y[1] ** 2 + G) / (m * y1 * y1 + moment), y[3], 0.0])
 
     def truth(t: Array) -> Array:
-        phases = _Phases(t)
+        phases = Phases(t)
         q, rate = phases.run(leaning, np.array([start, 0.0]), push)
         (x1, _), _second = curve(q)
         x = length / 2 * math.sin(q) + w / 2 * math.cos(q)
@@ -155,7 +115,7 @@ def _off_a_ledge(mu: float) -> Case:
         spin = -v / r if rolls else 0.0
         before = t <= reach
         out[before, 0] = np.stack([v * t[before], 0 * t[before] + r, spin * t[before]], axis=1)
-        phases = _Phases(t)
+        phases = Phases(t)
         phases.now = reach
         y = np.array([0.0, v / r, spin * reach, spin])
         if rolls:
@@ -202,7 +162,7 @@ def _rocking_block() -> Case:
     kept = 1 - m * reach**2 / about * (1 - math.cos(2 * slim))
 
     def truth(t: Array) -> Array:
-        phases = _Phases(t)
+        phases = Phases(t)
         side, y = 1.0, np.array([start, 0.0])  # y: tilt from flat, on the corner of this side
         sides = []
         while not phases.done:
@@ -239,7 +199,7 @@ def _plank_on_a_disk() -> Case:
         return first, (-(radius - h) * s - radius * q * c, (radius - h) * c - radius * q * s)
 
     def truth(t: Array) -> Array:
-        phases = _Phases(t)
+        phases = Phases(t)
         phases.run(_one_freedom(m, moment, curve), np.array([start, 0.0]))
         ((_, y),) = phases.states()
         q, s, c = y[:, 0], np.sin(y[:, 0]), np.cos(y[:, 0])
@@ -321,7 +281,7 @@ def _stop_peg() -> Case:
     stop = -0.2  # the rod's angle when it touches: the peg's centre is w / 2 + radius beside its middle line
 
     def truth(t: Array) -> Array:
-        phases = _Phases(t)
+        phases = Phases(t)
         y = np.array([start, 0.0])
         while not phases.done:
             y = phases.run(
@@ -400,7 +360,7 @@ def _four_bar() -> Case:
         return np.concatenate([w, found[:3]])
 
     def truth(t: Array) -> Array:
-        phases = _Phases(t)
+        phases = Phases(t)
         phases.run(slope, np.concatenate([assembled(), np.zeros(3)]))
         ((_, y),) = phases.states()
         a = y[:, :3]
