@@ -149,7 +149,7 @@ def _block_on_a_plank() -> Case:
 
 
 def _block_on_a_wedge() -> Case:
-    """No friction: the wedge gives way by m g sin cos / (M + m sin^2), the block goes (M + m) / (m cos) of that on it."""
+    """No friction: the wedge gives way by m g sin cos / (M + m sin^2), the block goes (M + m) / (m cos) of that."""
     m, mass, length, rise = 1.0, 3.0, 3.0, 1.5
     tilt = math.atan2(rise, length)
     s, c = math.sin(tilt), math.cos(tilt)
