@@ -138,6 +138,8 @@ def _letters(
         for left, top, right, bottom, other in bars[a + 1 :]:
             if left > x1 + NEAR_BY * longest:
                 break
+            if not set(c.pieces).isdisjoint(other.pieces):
+                continue
             reach = NEAR_BY * max(math.hypot(x1 - x0, y1 - y0), math.hypot(right - left, bottom - top))
             if left > x1 + reach or top > y1 + reach or bottom < y0 - reach:
                 continue

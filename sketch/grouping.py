@@ -14,7 +14,7 @@ from sketch.kernel import Point, Shaft
 from sketch.loose import Chain
 from sketch.pieces import Array, Page, Piece
 
-__all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "shafts"]
+__all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "in_line", "shafts"]
 
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
 MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
@@ -24,6 +24,9 @@ PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is on
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
 DETOUR = 1.5  # of that distance: the longest way over other ink
+STRAIGHT = 0.03  # of its length, what a stroke bends that may be a part of a straight line,
+ALIKE = 0.2  # and by how much more of it turns off the other [rad]
+BESIDE = 0.1  # of its length: as near as another part is
 HEAD_REACH = 0.5  # of a shaft: as near to its tip as its head comes,
 HEAD_SPAN = 1.2  # as far from it as it goes,
 HEAD_SIZE = 2.0  # and as large as it is
@@ -80,6 +83,24 @@ def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:
     for _, j in sorted(found)[:MOST_CROSSED]:
         if j > p.index:
             yield (p.index, j)
+
+
+def in_line(page: Page, p: Piece) -> Iterator[Piece]:
+    """Later strokes that go on with a straight one, or over it again: as straight, and nearly the same way."""
+    if not (_is_bar(p) and p.straight < STRAIGHT):
+        return
+    (ax, ay), (bx, by) = p.ends
+    x0, y0, x1, y1 = p.box
+    reach = BESIDE * p.length
+    for q in page.touching(x0 - reach, y0 - reach, x1 + reach, y1 + reach):
+        if q.index > p.index and _is_bar(q) and q.straight < STRAIGHT and page.apart(p.index, (q.index,)):
+            (cx, cy), (dx, dy) = q.ends
+            across, along = (
+                (bx - ax) * (dy - cy) - (by - ay) * (dx - cx),
+                (bx - ax) * (dx - cx) + (by - ay) * (dy - cy),
+            )
+            if abs(across) < ALIKE * abs(along):
+                yield q
 
 
 def _is_bar(p: Piece) -> bool:

@@ -9,16 +9,26 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from sketch.kernel import ArrowFit, Shaft, course, fit_arrows, off_outline
-from sketch.outlines import RETRACE
+from sketch.outlines import GAP, RETRACE
 from sketch.pieces import Array, Page, Piece
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
 
-__all__ = ["line_of_any_course", "read_arrows", "read_bar", "read_cross", "read_line", "with_strays"]
+__all__ = [
+    "line_of_any_course",
+    "read_arrows",
+    "read_bar",
+    "read_bar_of_two",
+    "read_cross",
+    "read_line",
+    "with_strays",
+]
 
 MOST_BENDS = 5
 STRAIGHT = (
     0.02  # of its half extent: usual spread of a rod's ink; what is off by much more is bent on purpose
 )
+LIFT = 0.1  # of a bar's length: what lacks where the pen was lifted,
+ASIDE = 0.06  # and how far aside it went on, at most
 BEND = 3.0  # nats for each corner of a bar
 SHARP = 12.0  # nats that a right angle is rarer in a bar, one that folds it back twice that
 HEAD = 2.0  # nats an observation to say ink freely, where it lies within an arrow's head
@@ -76,6 +86,43 @@ def read_line(piece: Piece) -> Fitted | None:
 def line_of_any_course(piece: Piece) -> Array | None:
     """A piece's ink as a few sides in equal steps [pixels]; None where it crosses itself."""
     return course(piece.points, THIN * piece.length)
+
+
+def read_bar_of_two(page: Page, first: Piece, second: Piece) -> Fitted | None:
+    """A straight bar in two strokes: one goes on where the other ends, or over it once more.
+
+    None where they are not in line, or far apart; and where a small ring joins them: these are two rods.
+    """
+    (ax, ay), (bx, by) = first.ends
+    chord = math.hypot(bx - ax, by - ay)
+    ux, uy = (bx - ax) / chord, (by - ay) / chord
+    at = [((x - ax) * ux + (y - ay) * uy, (y - ay) * ux - (x - ax) * uy) for x, y in second.ends]
+    (low, off), (high, away) = sorted(at)
+    long = max(chord, high) - min(0.0, low)
+    lift = max(low - chord, -high, 0.0)  # what lacks between them
+    if lift > LIFT * long or max(abs(off), abs(away)) > ASIDE * long:
+        return None
+    again = min(chord, high) - max(0.0, low)
+    if again < 0.5 * min(chord, high - low):
+        x, y = (bx, by) if low > 0.5 * chord else (ax, ay)
+        reach = LIFT * long
+        if any(r.gap < 0.2 * r.length for r in page.touching(x - reach, y - reach, x + reach, y + reach)):
+            return None
+    ink = page.strokes.samples[[first.stroke, second.stroke]]
+    weights = np.array([first.length, second.length]) / (len(ink[0]) * (first.length + second.length))
+    middle = (weights[:, None, None] * ink).sum(axis=(0, 1))
+    from_middle = ink - middle
+    spread = np.einsum("s,sni,snj->ij", weights, from_middle, from_middle)
+    squares, axes = np.linalg.eigh(spread)
+    along = axes[:, 1]
+    reaches = np.sort((np.array([*first.ends, *second.ends]) - middle) @ along)[[0, -1]]
+    scale = math.sqrt(3) / 4 * long  # half of the extent of a straight line so long
+    square, count = float(squares[0]), first.observations + second.observations
+    lacking = GAP * count * lift / long + RETRACE * count * max(again, 0.0) / long
+    bowed = 0.5 * square / (STRAIGHT * scale) ** 2
+    cost = RARE + 5 * PARAMETER + misfit(square / scale**2, count) + bowed + lacking
+    names = (first.index, second.index)
+    return Fitted("bar", names, cost, middle + reaches[:, None] * along)
 
 
 def _turning(v: list[Vertex]) -> float:

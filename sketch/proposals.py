@@ -19,9 +19,9 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, shafts
+from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, in_line, shafts
 from sketch.loose import End
-from sketch.marks import read_arrows, read_bar, read_cross, read_line, with_strays
+from sketch.marks import read_arrows, read_bar, read_bar_of_two, read_cross, read_line, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
 from sketch.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted
@@ -196,6 +196,7 @@ class Proposals:
         for j, ink in () if alone.complete else closing_ink(page, p):
             out += fitted(((p.index, j), "over"), partial(read_outline, page, [(p.index, False)], ink))
         out += _kept(read_bar(p)) + _kept(read_line(p))
+        out += [bar for q in in_line(page, p) for bar in _kept(read_bar_of_two(page, p, q))]
         if not alone.plain:
             for names in crosses(page, p):
                 most = self._said(names) + HOPELESS

@@ -341,7 +341,8 @@ static double turning(const Runs *r, const double stretch[2], const double *corn
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds;
  * residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed sides, flat
  * corners and short sides; vertices[k][SIDES][2] [pixels]; rectangle: what the nearest adds to residual[4], infinite for none,
- * and its corners (8) [pixels]; turning[k]: how much of the ink's turning is at the corners of the k-gon, for k from FEWEST to MOST. */
+ * and its corners (8) [pixels]; turned[k]: how much of the ink's turning is at the corners of the k-gon, for the best of those with
+ * FEWEST to MOST sides. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
                         double observations, double side, double hopeless, double *frame, double *length, double *round,
                         double *residual, double *cost, double *vertices, double *rectangle, double *turned,
@@ -387,9 +388,11 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         best_polygons(&r, factor, 0, STIFFNESS[0], stretch, cap2, length[0], observations, side, hopeless, residual,
                       cost, vertices);
     }
+    int best = FEWEST;
     for (int k = 0; k <= SIDES; k++) turned[k] = 0;
     for (int k = FEWEST; k <= MOST; k++)
-        if (isfinite(cost[k])) turned[k] = turning(&r, stretch, vertices + 2 * SIDES * k, k);
+        if (cost[k] + k * side < cost[best] + best * side) best = k;
+    if (isfinite(cost[best])) turned[best] = turning(&r, stretch, vertices + 2 * SIDES * best, best);
     for (int k = 3; k <= SIDES; k++)
         for (int q = 0; q < k && isfinite(cost[k]); q++) {
             double *v = vertices + 2 * (SIDES * k + q), x = v[0], y = v[1];

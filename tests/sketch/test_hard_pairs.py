@@ -275,6 +275,26 @@ def test_what_joins_the_bars_of_an_x_may_go_any_way() -> None:
         assert kinds(read(body, mark)) == ["4-gon", "anchor"]
 
 
+@pytest.mark.parametrize("second", [(0.52, 1.0), (0.0, 1.0), (0.3, 0.7), (0.45, 1.2)])
+def test_a_line_in_two_strokes_is_one_bar(second: tuple[float, float]) -> None:
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        a, b = np.array([200.0, 200.0]), np.array([500.0, 330.0])
+        first = line([tuple(a), tuple(a + (0.5 if second[0] > 0.4 else 1) * (b - a))], HANDS["neat"], rng)
+        rest = line([tuple(a + k * (b - a)) for k in second], HANDS["neat"], rng)
+        assert kinds(read(first, rest)) == ["bar"]
+        assert kinds(read(rest, [s[::-1] for s in first])) == ["bar"]
+
+
+def test_two_rods_in_line_that_a_ring_joins_are_two() -> None:
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        rods = [line([(x, 300), (x + 222, 303)], HANDS["neat"], rng) for x in (200, 400)]
+        found = read(*rods, circle((411, 302), 14, HANDS["neat"], rng))
+        assert kinds(found) == ["bar", "bar", "pivot"]
+        assert [j.bodies for j in found.scene.joints] == [("b1", "b2")]
+
+
 def test_a_rod_is_straight() -> None:
     for seed in range(6):
         rng = np.random.default_rng(seed)
