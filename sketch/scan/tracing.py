@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sketch.scan.binding import distances, thin, trace
 from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.crossed import crossed
+from sketch.scan.grain import smoothed_grain
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.overlaps import overlapping
 from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
@@ -95,9 +96,11 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
     import cv2
 
     work = picture
-    if scale != 1:
-        way = cv2.INTER_AREA if scale > 1 else cv2.INTER_LINEAR
-        work = cv2.resize(picture, None, fx=1 / scale, fy=1 / scale, interpolation=way)
+    if scale > 1:
+        work = cv2.resize(picture, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
+    work = smoothed_grain(work)
+    if scale < 1:
+        work = cv2.resize(work, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_LINEAR)
     if min(work.shape[:2]) < LEAST_SIDE:
         return Traced()
     page = read_page(work)
