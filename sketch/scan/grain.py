@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 __all__ = ["smoothed_grain"]
 
 COARSE = 12.0  # of 255: standard deviation of the bare paper's grain that is made smoother
-FINE = 4.0  # likewise, that may be left
+FINE = 7.0  # likewise, that may be left
 SIGMAS = (1.0, 1.5, 2.0, 3.0, 4.0)  # [pixels] of the smoothing, the least that does it is taken
 SAMPLES = 60_000  # pixels that the grain is measured on,
 BLOCK = 64  # in stretches of so many
@@ -41,9 +41,9 @@ def _grain(picture: NDArray[Any], smoother: NDArray[Any] | None) -> float:
     Of neighbours in a row the second difference has six times the variance of noise that is independent.
     """
     height, width = picture.shape[:2]
-    if width < BLOCK + 2:
-        return 0.0
     step = max(height * width // SAMPLES, 1) | 1  # odd: a pattern's period is even
+    if width < BLOCK + 2 or height < 4 * step:
+        return 0.0
     rows = picture[::step].min(axis=2).astype(np.int32)
     if smoother is None:
         off = (rows[:, 2:] - 2 * rows[:, 1:-1] + rows[:, :-2]).astype(np.float64) / 6**0.5
@@ -51,4 +51,4 @@ def _grain(picture: NDArray[Any], smoother: NDArray[Any] | None) -> float:
         off = (rows - smoother[::step].min(axis=2)).astype(np.float64)
     high, wide = len(off) // 4 * 4, off.shape[1] // BLOCK * BLOCK
     energy = (off[:high, :wide] ** 2).reshape(high // 4, 4, -1, BLOCK).mean(axis=(1, 3))
-    return float(np.percentile(energy, BARE)) ** 0.5 if energy.size else 0.0
+    return float(np.percentile(energy, BARE)) ** 0.5

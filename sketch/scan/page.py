@@ -41,6 +41,7 @@ DARK_BOARD = 110  # of 255
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
+CRISP = 0.5  # of what a pixel is darker than its surroundings, added to it before it is told from paper
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
 STAIN = 0.006  # of the picture's size, to either side: what is wider is a stain or filled
@@ -318,8 +319,11 @@ def ink_mask(page: Page, reach: int) -> Image:
     darkness = page.darkness
     if page.noise > GRAINY:
         darkness = cv2.GaussianBlur(darkness, (3, 3), 0)
-    half = cv2.dilate(darkness, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)) // 2
-    mask = np.asarray(darkness > np.maximum(half, np.uint8(floor)), np.uint8)
+    near = (2 * reach + 1, 2 * reach + 1)
+    half = cv2.dilate(darkness, np.ones(near, np.uint8)) // 2
+    # blurred ink makes the paper that it encloses grey: there it takes more to be ink
+    crisp = cv2.addWeighted(darkness, 1 + CRISP, cv2.blur(darkness, near), -CRISP, 0)
+    mask = np.asarray((crisp > half) & (darkness > np.uint8(floor)), np.uint8)
     size = (mask.shape[0] * mask.shape[1]) ** 0.5
     found = _measure(mask, page)
     notable = (found.span >= NOTABLE * size) & ~found.at_edge
@@ -328,7 +332,7 @@ def ink_mask(page: Page, reach: int) -> Image:
     if not len(notable):
         return np.zeros_like(mask)
     full = found.strength[notable].max()
-    mask |= darkness > max(floor, 0.75 * full)
+    mask |= crisp > max(floor, 0.75 * full)
     _link_thin_lines(mask, darkness, max(floor, FAINT * full), reach)
     found = _measure(mask, page)
     if _may_be_ruled(found, mask.shape) and drop_ruling(mask, darkness):

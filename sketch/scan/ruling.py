@@ -5,6 +5,7 @@ Where they are as dark as the pen only their geometry tells them from a drawing.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -44,14 +45,14 @@ def _drop_family(mask: Image, darkness: Image) -> bool:
     lines, thick = _long_lines(mask)
     if len(lines) < FEWEST:
         return False
-    family = _family(lines, mask.shape)
-    erased = 0
-    for line in family:
-        refined = _refined(line, mask, thick)
-        if refined is not None:
-            _erase(refined, mask, darkness, thick)
-            erased += 1
-    return erased >= FEWEST
+    family = [_refined(line, mask, thick) for line in _family(lines, mask.shape)]
+    belts = [_belt(line, mask, darkness, thick) for line in family if line is not None]
+    levels = [np.median(belt.dark[belt.alone]) for belt in belts if belt.alone.any()]
+    # all are printed alike: a line that is drawn along one of them, however far, is darker than the others
+    for belt in belts:
+        printed = ~belt.crossed & (belt.dark <= DARKER * np.median(levels)) if levels else ~belt.crossed
+        mask[belt.rows[:, printed], np.broadcast_to(belt.x, belt.rows.shape)[:, printed]] = 0
+    return len(belts) >= FEWEST
 
 
 def _long_lines(mask: Image) -> tuple[list[Line], float]:
@@ -135,18 +136,33 @@ def _refined(line: Line, mask: Image, thick: float) -> Line | None:
     return line
 
 
-def _erase(line: Line, mask: Image, darkness: Image, thick: float) -> None:
+@dataclass(frozen=True, eq=False)
+class _Belt:
+    """The pixels along a printed line, column by column.
+
+    Attributes:
+        x, rows: [pixels] of the columns, shape (n,), and the rows within the line's reach, shape (k, n).
+        dark: the darkest ink of each column, 0 without any.
+        crossed: where ink leads beyond the line's reach.
+    """
+
+    x: NDArray[np.intp]
+    rows: NDArray[np.intp]
+    dark: NDArray[Any]
+    crossed: NDArray[np.bool_]
+
+    @property
+    def alone(self) -> NDArray[np.bool_]:
+        return ~self.crossed & (self.dark > 0)
+
+
+def _belt(line: Line, mask: Image, darkness: Image, thick: float) -> _Belt:
     height, width = mask.shape
-    half = int(np.ceil(0.5 * thick + 1))
-    beyond = half + 1
+    beyond = int(np.ceil(0.5 * thick + 1)) + 1
     x = np.arange(width)
     middle = np.round(np.polyval(line, x)).astype(int)
     inside = (middle >= beyond) & (middle < height - beyond)
     x, rows = x[inside], middle[inside] + np.arange(-beyond, beyond + 1)[:, None]
     ink = mask[rows, x] > 0
-    dark = np.where(ink, darkness[rows, x], 0).max(axis=0)
-    crossed = ink[0] | ink[-1]
-    alone = ~crossed & (dark > 0)
-    if alone.any():
-        crossed |= dark > DARKER * np.median(dark[alone])
-    mask[rows[:, ~crossed], np.broadcast_to(x[~crossed], rows[:, ~crossed].shape)] = 0
+    dark = np.where(ink, darkness[rows, x], 0).max(axis=0, initial=0)
+    return _Belt(x, rows, dark, ink[0] | ink[-1])

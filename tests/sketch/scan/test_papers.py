@@ -136,13 +136,35 @@ def test_kinds_of_pixels(kind: str) -> None:
     assert_all(read_picture(encoded(picture)))
 
 
-def test_dithered_grey_is_paper() -> None:
-    """Its dots are no ink, and what was drawn on it is still there."""
+def error_diffused(grey: np.ndarray) -> np.ndarray:
+    """Floyd and Steinberg's dots: what a pixel is off is shared out to the next ones."""
+    left = np.pad(grey.astype(float), ((0, 1), (1, 1)))
+    for y in range(len(grey)):
+        row, below = left[y].tolist(), left[y + 1]
+        off = np.zeros(len(row))
+        for x in range(1, len(row) - 1):
+            value = 255.0 if row[x] > 127 else 0.0
+            off[x] = row[x] - value
+            row[x] = value
+            row[x + 1] += off[x] * 7 / 16
+        below += (3 * np.roll(off, -1) + 5 * off + np.roll(off, 1)) / 16
+        left[y] = row
+    return left[:-1, 1:-1].astype(np.uint8)
+
+
+@pytest.mark.parametrize("paper", [120, 150, 170, 185, 200, 220, 240])
+def test_dithered_grey_is_paper(paper: int) -> None:
+    """Its dots are no ink, though they touch the lines, and what was drawn on it is still there."""
     matrix = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]]) * 16 + 8
-    grey = drawn(ink(pen=6), paper=(150, 150, 150), pen=(20, 20, 20))[..., 1]
+    grey = drawn(ink(pen=6), paper=(paper,) * 3, pen=(20, 20, 20))[..., 1]
     dots = np.where(grey > np.tile(matrix, (HEIGHT // 4, WIDTH // 4)), 255, 0).astype(np.uint8)
-    sketch = read_picture(encoded(dots))
-    assert 0 < len(sketch.strokes) < 10
+    assert_all(read_picture(encoded(dots)), 2.0)
+
+
+@pytest.mark.parametrize("paper", [150, 200])
+def test_error_diffused_grey_is_paper(paper: int) -> None:
+    grey = drawn(ink(pen=6), paper=(paper,) * 3, pen=(20, 20, 20))[..., 1]
+    assert_all(read_picture(encoded(error_diffused(grey))), 2.2)
 
 
 def with_orientation(jpeg: bytes, orientation: int) -> bytes:
