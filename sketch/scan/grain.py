@@ -51,4 +51,4 @@ def _grain(picture: NDArray[Any], smoother: NDArray[Any] | None) -> float:
         off = (rows - smoother[::step].min(axis=2)).astype(np.float64)
     high, wide = len(off) // 4 * 4, off.shape[1] // BLOCK * BLOCK
     energy = (off[:high, :wide] ** 2).reshape(high // 4, 4, -1, BLOCK).mean(axis=(1, 3))
-    return float(np.percentile(energy, BARE)) ** 0.5
+    return float(np.percentile(energy, BARE) ** 0.5)
