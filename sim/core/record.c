@@ -10,11 +10,13 @@ int recorder_create(Recorder *r, const World *world, const SimOptions *options, 
                     .still = options->sample_count,
                     .frames = frames};
     r->next = calloc((size_t)world->body_count, sizeof *r->next);
-    return r->next ? SIM_OK : SIM_OUT_OF_MEMORY;
+    r->rested = calloc((size_t)world->source_count + 1, sizeof *r->rested);
+    return r->next && r->rested ? SIM_OK : SIM_OUT_OF_MEMORY;
 }
 
 void recorder_destroy(Recorder *r) {
     free(r->next);
+    free(r->rested);
     free(r->event);
     index_destroy(&r->touching);
     *r = (Recorder){0};
@@ -35,6 +37,7 @@ static void write_sample(Recorder *r, int32_t body, int64_t k, const State *stat
         out[2] = state->angle + (alone ? 0 : shape->turned);
         out[3] = state->v.x - state->spin * arm.y, out[4] = state->v.y + state->spin * arm.x;
         out[5] = state->spin;
+        if (state->v.x != 0 || state->v.y != 0 || state->spin != 0) r->rested[shape->source] = false;
     }
 }
 
@@ -101,12 +104,23 @@ static int note_contact(Recorder *r, const SimEvent *event, bool *news) {
     return SIM_OK;
 }
 
+/* Note that a body is struck, or rests.  Whether that is news: one that its neighbours wake, and that rests again before it has
+ * been seen to move, has not come to rest. */
+static bool note_rest(Recorder *r, const SimEvent *event) {
+    bool news = event->kind != SIM_REST || !r->rested[event->body[0]];
+    if (event->kind == SIM_REST) r->rested[event->body[0]] = true;
+    for (int k = 0; event->kind == SIM_IMPACT && k < 2; k++)
+        if (event->body[k] >= 0) r->rested[event->body[k]] = false;
+    return news;
+}
+
 int record_event(Recorder *r, const SimEvent *event) {
     if (event->kind == SIM_CONTACT_BEGUN || event->kind == SIM_CONTACT_ENDED) {
         bool news;
         int status = note_contact(r, event, &news);
         if (status != SIM_OK || !news) return status;
     }
+    if (!note_rest(r, event)) return SIM_OK;
     if (event->time > (double)(r->sample_count - 1) / r->fps) return SIM_OK;
     if (r->event_count == r->event_capacity) {
         int64_t capacity = r->event_capacity ? 2 * r->event_capacity : 64;

@@ -12,6 +12,7 @@ typedef struct Recorder {
     int64_t still;  /* from this sample on each is as the one before */
     double *frames; /* sample_count x sources x 6 */
     int64_t *next;  /* of every body: its first sample that is not written yet */
+    bool *rested;   /* sources that were told to rest, and have neither been struck nor seen to move since */
     SimEvent *event;
     int64_t event_count, event_capacity;
     Index touching; /* by pair of sources, the lower first: 1 while in contact, as told */

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sim import Scene, Trajectory, simulate
+from sim.bench.stress_scenes import cases
 
 G = 9.81
 RADIUS, ELASTICITY = 0.2, 0.4
@@ -77,6 +78,24 @@ def test_every_body_is_told_to_rest_after_it_moved(pile: tuple[Scene, Trajectory
         if not body.anchored:
             moving = np.nonzero(np.any(run.velocities[:, i] != 0, axis=1))[0][-1]
             assert last[body.id].time > run.times[moving]
+
+
+def test_rest_is_told_once_until_a_body_moves_or_is_struck() -> None:
+    """Rough bodies that lie in a pile are woken by what lands on it, and mostly stay where they are."""
+    case = next(c for c in cases() if c.name == "pile, friction 10, elasticity 0.3")
+    run = simulate(case.scene, duration=case.duration)
+    rested: dict[str, float] = {}
+    for e in run.events:
+        if e.kind == "impact":
+            for name in e.bodies:
+                rested.pop(str(name), None)
+        elif e.kind == "rest":
+            body = run.body_ids.index(e.bodies[0])
+            if e.bodies[0] in rested:
+                between = (run.times >= rested[e.bodies[0]]) & (run.times <= e.time)
+                assert np.any(run.velocities[between, body]) or np.any(run.angular_velocities[between, body])
+            rested[e.bodies[0]] = e.time
+    assert len(rested) > 40
 
 
 def test_a_first_blow_has_the_impulse_that_turns_the_fall_around() -> None:
