@@ -42,7 +42,11 @@ class Rectangle(msgspec.Struct, tag="rectangle", frozen=True):
 
 
 class Polygon(msgspec.Struct, tag="polygon", frozen=True):
-    """A simple polygon, convex or concave. vertices: about the body's position [m], either way round."""
+    """A simple polygon, convex or concave.
+
+    vertices: about the body's position [m], either way round. The position is the centre of mass: what is
+    loaded is moved to its centroid, what is made in Python has its mass where the position is.
+    """
 
     vertices: list[Vector]
 
@@ -271,18 +275,26 @@ def _centre(body: Body) -> None:
 
 
 def _number(value: float, path: str, index: int = 0, most: float = LARGEST) -> None:
-    if -most <= value <= most:
-        return
+    try:
+        if -most <= value <= most:
+            return
+    except TypeError:
+        raise InputError(_fill(path, index), f"{value!r} is not a number") from None
     path = _fill(path, index)
     if not math.isfinite(value):
         raise InputError(path, f"{value} is not a finite number")
     raise InputError(path, f"{value:g} is beyond {most:g}", "units are metres, seconds and kilograms")
 
 
-def _vector(values: tuple[float, ...], path: str, index: int = 0) -> None:
+def _vector(values: Vector, path: str, index: int = 0) -> None:
+    try:
+        x, y = values
+        if -LARGEST <= x <= LARGEST and -LARGEST <= y <= LARGEST:
+            return
+    except (TypeError, ValueError):
+        raise InputError(_fill(path, index), f"{values!r} is not two numbers") from None
     for k, v in enumerate(values):
-        if not -LARGEST <= v <= LARGEST:
-            _number(v, f"{_fill(path, index)}[{k}]")
+        _number(v, f"{_fill(path, index)}[{k}]")
 
 
 def _positive(value: float, path: str, index: int = 0, least: float = 0.0, most: float = LARGEST) -> None:
@@ -324,10 +336,13 @@ def _check_body(body: Body, i: int) -> None:
     if isinstance(body.shape, Circle):
         _positive(body.shape.radius, "bodies[%d].shape.radius", i, SMALLEST)
     elif isinstance(body.shape, Rectangle):
+        _vector(body.shape.size, "bodies[%d].shape.size", i)
         _positive(body.shape.size[0], "bodies[%d].shape.size[0]", i, SMALLEST)
         _positive(body.shape.size[1], "bodies[%d].shape.size[1]", i, SMALLEST)
-    else:
+    elif isinstance(body.shape, Polygon):
         _check_vertices(body.shape, f"bodies[{i}].shape.vertices")
+    else:
+        raise InputError(f"bodies[{i}].shape", f"{body.shape!r} is not a Circle, a Rectangle or a Polygon")
 
 
 def _is_color(text: str) -> bool:

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from sim.bench.parts import Array, Case, G, make_box, make_disk, make_scene
-from sim.scene import Body, Joint, Polygon, Scene
+from sim.scene import Body, Joint, Polygon, Scene, area_properties
 
 __all__ = ["LINKAGES"]
 
@@ -94,14 +94,12 @@ def _whirl() -> Case:
 
 def _compound_pendulum() -> Case:
     """A right angle hangs by one end, and a disk by its rim from the other."""
-    ell = Polygon([(0.0, 0.0), (0.8, 0.0), (0.8, 0.15), (0.15, 0.15), (0.15, 0.6), (0.0, 0.6)])
-    corner = ell.vertices[0]  # in the frame of its centroid
-    at = (
-        -corner[0] - 0.075,
-        -corner[1] - 0.525,
-    )  # so that the pivot, 0.075 within the upper end, is the origin
+    drawn = [(0.0, 0.0), (0.8, 0.0), (0.8, 0.15), (0.15, 0.15), (0.15, 0.6), (0.0, 0.6)]
+    _, (x, y), _ = area_properties(Polygon(drawn))
+    ell = Polygon([(px - x, py - y) for px, py in drawn])
+    at = (x - 0.075, y - 0.525)  # so that the pivot, 0.075 within the upper end, is the origin
     body = Body(id="a", shape=ell, position=at, friction=0.0, elasticity=0.0)
-    disk = make_disk("b", 0.2, (0.725 - 0.075 + 0.17, 0.075 - 0.525), mass=0.3)
+    disk = make_disk("b", 0.2, (0.82, -0.45), mass=0.3)
     joints = [_pivot(None, "a", (0.0, 0.0)), _pivot("a", "b", (0.65, -0.45))]
     return _linkage(
         "compound pendulum", "an angle iron and a disk by its rim", make_scene([body, disk], joints), 4.0

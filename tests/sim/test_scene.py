@@ -239,6 +239,23 @@ def test_a_polygon_off_its_centroid_is_centred_and_stays_where_it_is():
     assert body.outline() == [pytest.approx(p) for p in [(9, 1), (9, 3), (8, 3), (8, 1)]]
 
 
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ({"position": (0.0, 1.0, 2.0)}, r"bodies\[0\].position: .* is not two numbers"),
+        ({"velocity": 3.0}, r"bodies\[0\].velocity: 3.0 is not two numbers"),
+        ({"angle": "0"}, r"bodies\[0\].angle: '0' is not a number"),
+        ({"shape": Circle("1")}, r"bodies\[0\].shape.radius: '1' is not a number"),  # type: ignore[arg-type]
+        ({"shape": Rectangle(1.0)}, r"bodies\[0\].shape.size: 1.0 is not two numbers"),  # type: ignore[arg-type]
+        ({"shape": None}, r"bodies\[0\].shape: None is not a Circle, a Rectangle or a Polygon"),
+    ],
+)
+def test_values_of_another_kind_are_refused_with_the_place(wrong, says):
+    body = Body(**{"id": "a", "shape": Circle(1.0), "position": (0.0, 0.0)} | wrong)
+    with pytest.raises(InputError, match=says):
+        Scene(bodies=[body]).check()
+
+
 def test_a_large_polygon_is_checked_in_time():
     n = 10_000
     round_ = [[math.cos(2 * math.pi * k / n), math.sin(2 * math.pi * k / n)] for k in range(n)]
