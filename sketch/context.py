@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.kernel import beside, depth
-from sketch.proposals import Box, Proposed
+from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
 
-__all__ = ["Context"]
+__all__ = ["Context", "Pick"]
 
 Array = NDArray[np.float64]
-Row = list[float]  # of a reading: its least x, least y, greatest x, greatest y and extent [pixels]
+Pick = tuple[int, int]  # what was proposed by which piece, and which of it
+Around = dict[Fitted, Row]  # bodies and marks, each with where it is
 Gaps = dict[tuple[Fitted, Fitted], tuple[float, Array]]  # of open lines: how wide [pixels], and where
 
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
@@ -41,47 +42,55 @@ class Context:
 
     def __init__(self) -> None:
         self._gaps: Gaps = {}
-        self._known: dict[Proposed, tuple[list[Fitted], float, list[float]]] = {}
+        self._known: dict[Proposed, list[float]] = {}
+        self._bodies: Around = {}
+        self._size = 0.0
 
-    def gains(
-        self,
-        proposed: list[Proposed],
-        candidates: list[Fitted],
-        chosen: list[int],
-        size: float,
-    ) -> list[float]:
-        """The gains, given the bodies (`chosen` candidates) that the ink by itself makes likely.
+    def told(self, proposed: list[Proposed], likely: list[Pick], size: float) -> list[list[float]]:
+        """The gains of all that is proposed, given the bodies that the ink by itself makes likely.
 
-        proposed: whose candidates are `candidates`, one after another.  size: of the page [pixels].
+        likely: which of it they are.  size: of the page [pixels].
         """
-        around = [k for k in chosen if candidates[k].closed or candidates[k].kind == "cross"]
-        boxes = np.concatenate([np.empty((0, 4)), *(p.boxes for p in proposed)])
-        extents = np.hypot(*(boxes[:, 2:] - boxes[:, :2]).T)
-        rows = np.column_stack([boxes, extents]).tolist()
-        bodies = _Bodies([candidates[k] for k in around], [rows[k] for k in around])
-        known, self._known = self._known, {}
-        out: list[float] = []
-        for p, near in zip(proposed, bodies.beside([p.box for p in proposed]), strict=True):
-            there = known.get(p)
-            its = [bodies.bodies[b] for b in near]
-            if there is None or there[0] != its or there[1] != size:
-                own = rows[len(out) : len(out) + len(p.candidates)]
-                there = its, size, _told(p, own, _Bodies(its, [bodies.rows[b] for b in near]), size)
-            self._known[p] = there
-            out += there[2]
-        first = _first_arrow(candidates, out, chosen)
-        for k, c in enumerate(candidates):
-            if c.kind == "arrow" and first:
-                out[k] += -ONE_ARROW if first.isdisjoint(c.pieces) else ONE_ARROW
-        for k in _letters(candidates, out, chosen, LETTER * size, self._gaps):
-            out[k] -= TOUCHING
+        chosen = [(proposed[p].candidates[k], proposed[p].rows[k]) for p, k in likely]
+        bodies = {c: row for c, row in chosen if c.closed or c.kind == "cross"}
+        others = {
+            c: row for c, row in (self._bodies | bodies).items() if c not in bodies or c not in self._bodies
+        }
+        known = self._known if size == self._size else {}
+        changed = {k for k, _ in _beside(proposed, others)}
+        anew = [k for k, p in enumerate(proposed) if k in changed or p not in known]
+        near: dict[int, Around] = {k: {} for k in anew}
+        every = list(bodies.items())
+        for k, b in _beside([proposed[k] for k in anew], bodies):
+            body, row = every[b]
+            near[anew[k]][body] = row
+        told = [_told(p, _Bodies(near[k]), size) if k in near else known[p] for k, p in enumerate(proposed)]
+        self._known = dict(zip(proposed, told, strict=True))
+        self._bodies, self._size = bodies, size
+        out = list(told)
+        first = _first_arrow(proposed, told, likely)
+        for n, p in enumerate(proposed):
+            if first and p.arrows:
+                out[n] = own = list(told[n])
+                for k in p.arrows:
+                    own[k] += -ONE_ARROW if first.isdisjoint(p.candidates[k].pieces) else ONE_ARROW
+        for n, k in _letters(proposed, likely, LETTER * size, self._gaps):
+            out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
+            own[k] -= TOUCHING
         return out
 
 
-def _told(proposed: Proposed, rows: list[Row], bodies: _Bodies, size: float) -> list[float]:
-    """The gains of one piece's proposals, given where each is and the bodies around them."""
+def _beside(proposed: list[Proposed], bodies: Around) -> list[list[int]]:
+    """Pairs of what one piece proposed and a body that can matter to it, as numbers."""
+    if not proposed or not bodies:
+        return []
+    return beside(np.array([p.box for p in proposed]), np.array(list(bodies.values())))
+
+
+def _told(proposed: Proposed, bodies: _Bodies, size: float) -> list[float]:
+    """The gains of one piece's proposals, given the bodies around them."""
     gains = list(proposed.gains)
-    for k, (c, row) in enumerate(zip(proposed.candidates, rows, strict=True)):
+    for k, (c, row) in enumerate(zip(proposed.candidates, proposed.rows, strict=True)):
         if gains[k] < -NO_BODY:
             continue
         extent = row[4]
@@ -101,46 +110,56 @@ def _told(proposed: Proposed, rows: list[Row], bodies: _Bodies, size: float) -> 
     return gains
 
 
-def _first_arrow(candidates: list[Fitted], gains: list[float], chosen: list[int]) -> set[int]:
-    """The pieces of the likeliest arrow: of those chosen, or else on ink that is nothing likelier."""
-    arrows = [k for k in chosen if candidates[k].kind == "arrow"]
+def _first_arrow(proposed: list[Proposed], told: list[list[float]], likely: list[Pick]) -> set[int]:
+    """The pieces of the likeliest arrow: of those that are likely, or else on ink that is nothing likelier."""
+    arrows = [(p, k) for p, k in likely if proposed[p].candidates[k].kind == "arrow"]
     if not arrows:
-        taken = {i for k in chosen if candidates[k].kind != "bar" for i in candidates[k].pieces}
-        arrows = [k for k, c in enumerate(candidates) if c.kind == "arrow" and taken.isdisjoint(c.pieces)]
-    return set(candidates[max(arrows, key=lambda k: gains[k])].pieces) if arrows else set()
+        taken = _taken(proposed, likely, "bar")
+        every = ((n, k) for n, p in enumerate(proposed) for k in p.arrows)
+        arrows = [(n, k) for n, k in every if taken.isdisjoint(proposed[n].candidates[k].pieces)]
+    if not arrows:
+        return set()
+    n, k = max(arrows, key=lambda pick: told[pick[0]][pick[1]])
+    return set(proposed[n].candidates[k].pieces)
 
 
-def _letters(
-    candidates: list[Fitted], gains: list[float], chosen: list[int], largest: float, known: Gaps
-) -> list[int]:
+def _taken(proposed: list[Proposed], likely: list[Pick], *but: str) -> set[int]:
+    """The pieces of what is likely, but of some kinds."""
+    chosen = (proposed[p].candidates[k] for p, k in likely)
+    return {i for c in chosen if c.kind not in but for i in c.pieces}
+
+
+def _letters(proposed: list[Proposed], likely: list[Pick], largest: float, known: Gaps) -> list[Pick]:
     """Bars no larger than `largest` [pixels] that touch or cross one another, with no small circle there to join them.
 
     A letter, an asterisk, a battery's sign are that; rods that are meant to do something are joined, or large.
     known: gaps of the last time, replaced by those of this one.
     """
-    taken = {i for k in chosen if candidates[k].kind not in ("bar", "cross") for i in candidates[k].pieces}
-    pins = [candidates[k].middle for k in chosen if candidates[k].kind == "circle"]
-    readings: dict[tuple[int, ...], list[int]] = {}  # a stroke too short or bent for a rod is in a letter too
-    for k, c in enumerate(candidates):
-        if c.kind == "bar" and taken.isdisjoint(c.pieces):
-            readings.setdefault(c.pieces, []).append(k)
-    bars: list[tuple[float, float, float, float, Fitted]] = []
-    for k, *_ in readings.values():
-        c = candidates[k]
-        (x0, y0), (x1, y1) = c.outline.min(axis=0).tolist(), c.outline.max(axis=0).tolist()
-        if math.hypot(x1 - x0, y1 - y0) < largest:
-            bars.append((x0, y0, x1, y1, c))
-    bars.sort(key=lambda t: t[:4])
-    found: set[int] = set()
+    taken = _taken(proposed, likely, "bar", "cross")
+    pins = [c.middle for c in (proposed[p].candidates[k] for p, k in likely) if c.kind == "circle"]
+    readings: dict[
+        tuple[int, ...], list[Pick]
+    ] = {}  # a stroke too short or bent for a rod is in a letter too
+    for n, p in enumerate(proposed):
+        for k in p.bars:
+            if taken.isdisjoint(p.candidates[k].pieces):
+                readings.setdefault(p.candidates[k].pieces, []).append((n, k))
+    bars: list[tuple[Row, Fitted]] = []
+    for (n, k), *_ in readings.values():
+        row = proposed[n].rows[k]
+        if row[4] < largest:
+            bars.append((row, proposed[n].candidates[k]))
+    bars.sort(key=lambda t: t[0])
+    found: set[Pick] = set()
     now: Gaps = {}
-    longest = max((math.hypot(x1 - x0, y1 - y0) for x0, y0, x1, y1, _ in bars), default=0.0)
-    for a, (x0, y0, x1, y1, c) in enumerate(bars):
-        for left, top, right, bottom, other in bars[a + 1 :]:
+    longest = max((row[4] for row, _ in bars), default=0.0)
+    for a, ((_, y0, x1, y1, extent), c) in enumerate(bars):
+        for (left, top, _, bottom, wide), other in bars[a + 1 :]:
             if left > x1 + NEAR_BY * longest:
                 break
             if not set(c.pieces).isdisjoint(other.pieces):
                 continue
-            reach = NEAR_BY * max(math.hypot(x1 - x0, y1 - y0), math.hypot(right - left, bottom - top))
+            reach = NEAR_BY * max(extent, wide)
             if left > x1 + reach or top > y1 + reach or bottom < y0 - reach:
                 continue
             pair = c, other
@@ -168,18 +187,9 @@ def _dense(line: Array) -> Array:
 class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
-    def __init__(self, bodies: list[Fitted], rows: list[Row]) -> None:
-        self.bodies = bodies
-        self.rows = rows
-        self.closed = [(body, row) for body, row in zip(bodies, rows, strict=True) if body.closed]
-        self.crosses = [(c, row[4]) for c, row in zip(bodies, rows, strict=True) if c.kind == "cross"]
-
-    def beside(self, boxes: list[Box]) -> list[list[int]]:
-        """Which bodies can matter to marks in each of these boxes."""
-        out: list[list[int]] = [[] for _ in boxes]
-        for i, b in beside(np.array(boxes), np.array(self.rows)) if self.bodies and boxes else ():
-            out[i].append(b)
-        return out
+    def __init__(self, bodies: Around) -> None:
+        self.closed = [(body, row) for body, row in bodies.items() if body.closed]
+        self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]
 
     def around(self, c: Fitted, reach: float, least: float = 0.0) -> int:
         """How many bodies of other ink, at least so large, have c's centre within them or within `reach`."""

@@ -25,8 +25,9 @@ from sketch.marks import read_arrows, read_bar, read_bar_of_two, read_cross, rea
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
 from sketch.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted
+from sketch.search import Part, part
 
-__all__ = ["Box", "Proposals", "Proposed", "proposing"]
+__all__ = ["Box", "Proposals", "Proposed", "Row", "proposing"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
 CLOSED = 0.04  # of its ink, what is missing at most of an outline that needs no other ink
@@ -36,6 +37,7 @@ HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
 Fits = dict[Key, list[Fitted]]
 Box = tuple[float, float, float, float]
+Row = list[float]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -59,15 +61,20 @@ class Proposed:
 
     Attributes:
         candidates: readings of groups that it leads, and gains: what each saves against saying its ink freely.
-        boxes: around the outline of each [pixels], (n, 4).  box: around them all.
+        rows: of the outline of each its least x and y, greatest x and y, and extent [pixels].  box: around them all.
+        arrows, bars: which of them are these.
+        alone: what they gain by themselves.
         looked: what it saw of the page; seen: the box around all boxes of it.
         fits: of which they were made.
     """
 
     candidates: list[Fitted]
     gains: list[float]
-    boxes: NDArray[np.float64]
+    rows: list[Row]
     box: Box
+    arrows: list[int]
+    bars: list[int]
+    alone: Part
     looked: Looked
     seen: Box
     fits: Fits
@@ -231,15 +238,26 @@ def proposing(
 ) -> Proposed:
     """Readings with their gains; looked, fits: what they depend on, and were made of."""
     seen = Looked() if looked is None else looked
-    boxes, box = np.empty((0, 4)), _around([])
+    rows, box = list[Row](), _around([])
     if candidates:
         outlines = [c.outline for c in candidates]
         first = np.fromiter(accumulate(map(len, outlines[:-1]), initial=0), dtype=np.intp)
         points = np.concatenate(outlines)
         low, high = np.minimum.reduceat(points, first), np.maximum.reduceat(points, first)
-        boxes = np.concatenate([low, high], axis=1)
+        rows = np.column_stack([low, high, np.hypot(*(high - low).T)]).tolist()
         box = (*low.min(axis=0).tolist(), *high.max(axis=0).tolist())
-    return Proposed(candidates, gains, boxes, box, seen, _around(seen.boxes), {} if fits is None else fits)
+    return Proposed(
+        candidates,
+        gains,
+        rows,
+        box,
+        arrows=[k for k, c in enumerate(candidates) if c.kind == "arrow"],
+        bars=[k for k, c in enumerate(candidates) if c.kind == "bar"],
+        alone=part([c.pieces for c in candidates], gains),
+        looked=seen,
+        seen=_around(seen.boxes),
+        fits={} if fits is None else fits,
+    )
 
 
 def _closes(outline: Fitted, free: float) -> bool:

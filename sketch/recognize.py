@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import InputError, Scene
-from sketch.context import Context
+from sketch.context import Context, Pick
 from sketch.cutting import things_in
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
@@ -34,7 +34,7 @@ from sketch.proposals import Proposals, Proposed, proposing
 from sketch.reading import Reading, scored
 from sketch.sampling import sampled
 from sketch.scoring import Fitted
-from sketch.search import Solved, best_packing
+from sketch.search import Part, Solved, best_parts, part
 
 __all__ = ["Reading", "Recognition", "Recognizer", "recognize"]
 
@@ -98,6 +98,9 @@ class Recognizer:
         self._context = Context()
         self._alone: Solved = {}
         self._together: Solved = {}
+        self._parts: dict[
+            Proposed, tuple[list[float], Part]
+        ] = {}  # gains with all that is around, and of these
         self._places: dict[Fitted, Placed] = {}
         self._strokes: dict[int, Stroke] = {}
         self._pieces: dict[int, list[int]] = {}  # of each stroke the things drawn in it: mostly one
@@ -145,14 +148,22 @@ class Recognizer:
         keys = list(self._strokes)
         pieces = [self._pieces[key] for key in keys]
         said = {tuple(i for s in strokes for i in pieces[s]): kind for strokes, kind in forced.items()}
-        candidates, gains, chosen = self._explained(said)
+        proposed, told, chosen = self._explained(said)
         sketch = self.sketch
         number = {i: s for s, of in enumerate(pieces) for i in of}
-        fits = [candidates[k] for k in chosen]
         page = self._proposals.page
-        self._places = {c: self._places.get(c) or placed(page, c) for c in fits}
-        readings = _readings(candidates, gains, chosen, number, self._places)
-        read = {i for k in chosen for i in candidates[k].pieces}
+        self._places = {c: self._places.get(c) or placed(page, c) for c, _ in chosen}
+        leads = {i: k for k, i in enumerate(page.pieces)}
+        others = range(len(leads), len(proposed))  # what was forced
+        readings = []
+        for c, gain in chosen:
+            rivals = _rivals(
+                c, [(proposed[k], told[k]) for k in (*map(leads.__getitem__, c.pieces), *others)]
+            )
+            strokes = tuple(sorted({number[i] for i in c.pieces}))
+            readings.append(_reading(c, gain, strokes, rivals, self._places[c]))
+        readings.sort(key=lambda r: r.strokes)
+        read = {i for c, _ in chosen for i in c.pieces}
         for i, stroke in enumerate(sketch.strokes):
             if not read.issuperset(pieces[i]):
                 readings.append(Reading("unread", (i,), 0.0, stroke.points))
@@ -164,16 +175,23 @@ class Recognizer:
                     reading.forced = kind
         return Recognition(sketch, interpret(sketch, readings, scale, gravity, tidy), readings)
 
-    def _explained(self, forced: Overrides) -> tuple[list[Fitted], list[float], list[int]]:
-        """All candidates with their gains, and which of them explain the page best."""
+    def _explained(
+        self, forced: Overrides
+    ) -> tuple[list[Proposed], list[list[float]], list[tuple[Fitted, float]]]:
+        """All that is proposed, with its gains, and what of it explains the page best, likewise."""
         proposed = self._proposals.all()
         if forced:
             proposed = _with_forced(self._proposals.page, proposed, forced)
-        candidates = [c for p in proposed for c in p.candidates]
-        gains = [g for p in proposed for g in p.gains]
-        likely = _best(candidates, gains, self._alone)
-        gains = self._context.gains(proposed, candidates, likely, self._proposals.page.size)
-        return candidates, gains, _one_a_place(candidates, gains, _best(candidates, gains, self._together))
+        likely: list[Pick] = best_parts([p.alone for p in proposed], self._alone)
+        told = self._context.told(proposed, likely, self._proposals.page.size)
+        known, self._parts = self._parts, {}
+        for p, gains in zip(proposed, told, strict=True):
+            there = known.get(p)
+            if there is None or there[0] != gains:
+                there = gains, part([c.pieces for c in p.candidates], gains)
+            self._parts[p] = there
+        best = best_parts([self._parts[p][1] for p in proposed], self._together)
+        return proposed, told, _one_a_place([(proposed[p].candidates[k], told[p][k]) for p, k in best])
 
 
 def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> list[Proposed]:
@@ -194,37 +212,28 @@ def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> lis
 # ---------------------------------------------------------------- the best explanation
 
 
-def _best(candidates: list[Fitted], gains: list[float], solved: Solved) -> list[int]:
-    """Indices of the disjoint candidates with the greatest total gain."""
-    live = [k for k, gain in enumerate(gains) if gain > 0]
-    chosen = best_packing([candidates[k].pieces for k in live], [gains[k] for k in live], solved)
-    return [live[k] for k in chosen]
-
-
-def _one_a_place(candidates: list[Fitted], gains: list[float], chosen: list[int]) -> list[int]:
-    """The chosen, with bodies that were drawn over one another in full joined to the best of them.
+def _one_a_place(chosen: list[tuple[Fitted, float]]) -> list[tuple[Fitted, float]]:
+    """The chosen and their gains, with bodies that were drawn over one another in full joined to the best of them.
 
     No two bodies have one place; that is known of the pair, and so after the search, which scores each by itself.
     """
-    order = sorted(chosen, key=lambda k: -gains[k])
-    closed = [k for k in order if candidates[k].closed]
-    scale = np.array([candidates[k].scale for k in closed])
-    at = np.array([candidates[k].middle for k in closed]).reshape(-1, 2)
+    chosen = sorted(chosen, key=lambda t: -t[1])
+    closed = [k for k, (c, _) in enumerate(chosen) if c.closed]
+    scale = np.array([chosen[k][0].scale for k in closed])
+    at = np.array([chosen[k][0].middle for k in closed]).reshape(-1, 2)
     far = SAME_PLACE * np.maximum(scale, scale[:, None])
     close = np.abs(scale - scale[:, None]) <= far
     close &= np.abs(at[:, None] - at).max(axis=2, initial=0.0) <= far
-    joined: dict[int, int] = {}  # into which reading another went
-    now: dict[int, int] = {}  # what has become of a chosen reading
+    joined: set[int] = set()  # those that went into another
     for a, b in np.argwhere(np.triu(close, 1)).tolist():
         k, j = closed[a], closed[b]
-        if k in joined or j in joined or not _same_place(candidates[j], candidates[now.get(k, k)]):
+        kept, other = chosen[k], chosen[j]
+        if k in joined or j in joined or not _same_place(other[0], kept[0]):
             continue
-        joined[j] = k
-        kept, other = candidates[now.get(k, k)], candidates[j]
-        candidates.append(replace(kept, pieces=tuple(sorted((*kept.pieces, *other.pieces)))))
-        gains.append(gains[now.get(k, k)] + gains[j])
-        now[k] = len(candidates) - 1
-    return [now.get(k, k) for k in order if k not in joined]
+        joined.add(j)
+        pieces = tuple(sorted((*kept[0].pieces, *other[0].pieces)))
+        chosen[k] = replace(kept[0], pieces=pieces), kept[1] + other[1]
+    return [chosen[k] for k in range(len(chosen)) if k not in joined]
 
 
 def _same_place(a: Fitted, b: Fitted) -> bool:
@@ -239,47 +248,37 @@ def _same_place(a: Fitted, b: Fitted) -> bool:
     )
 
 
-def _readings(
-    candidates: list[Fitted],
-    gains: list[float],
-    chosen: list[int],
-    number: dict[int, int],
-    places: dict[Fitted, Placed],
-) -> list[Reading]:
-    """The chosen candidates, each with the other readings of the same ink as probabilities, in order of drawing.
+def _rivals(c: Fitted, proposed: list[tuple[Proposed, list[float]]]) -> dict[str, float]:
+    """What the same ink as a reading's may mean else, and what that gains.
 
-    number: of each piece the stroke.  places: of each chosen candidate.
+    proposed: by its pieces, with the gains.
     """
-    same: dict[tuple[int, ...], list[int]] = {candidates[k].pieces: [] for k in chosen}
-    for k, c in enumerate(candidates):
-        if c.pieces in same:
-            same[c.pieces].append(k)
-    readings = []
-    for k in chosen:
-        c = candidates[k]
-        best: dict[str, float] = {"unread": 0.0}
-        for j in same[c.pieces]:
-            if _meaning(candidates[j]) != _meaning(c):
-                kind = KINDS.get(candidates[j].kind, candidates[j].kind)
-                best[kind] = max(best.get(kind, -math.inf), gains[j])
-        kind = KINDS.get(c.kind, c.kind)
-        rivals = {name: gain - gains[k] for name, gain in best.items()}
-        score, others = scored(rivals)
-        strokes = tuple(sorted({number[i] for i in c.pieces}))
-        readings.append(
-            Reading(
-                kind,
-                strokes,
-                score,
-                places[c].outline,
-                others,
-                gains[k],
-                -max(rivals.values()),
-                c.rough,
-                places[c].error,
-            )
-        )
-    return sorted(readings, key=lambda r: r.strokes)
+    best: dict[str, float] = {"unread": 0.0}
+    for p, gains in proposed:
+        for other, gain in zip(p.candidates, gains, strict=True):
+            if other.pieces == c.pieces and _meaning(other) != _meaning(c):
+                kind = KINDS.get(other.kind, other.kind)
+                best[kind] = max(best.get(kind, -math.inf), gain)
+    return best
+
+
+def _reading(
+    c: Fitted, gain: float, strokes: tuple[int, ...], rivals: dict[str, float], place: Placed
+) -> Reading:
+    """A chosen reading, with the others of the same ink as probabilities."""
+    ahead = {name: other - gain for name, other in rivals.items()}
+    score, others = scored(ahead)
+    return Reading(
+        KINDS.get(c.kind, c.kind),
+        strokes,
+        score,
+        place.outline,
+        others,
+        gain,
+        -max(ahead.values()),
+        c.rough,
+        place.error,
+    )
 
 
 def _meaning(c: Fitted) -> str | int:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-__all__ = ["Solved", "best_packing"]
+__all__ = ["Part", "Solved", "best_packing", "best_parts", "part"]
 
 Group = tuple[int, ...]  # of pieces of ink
 
@@ -14,35 +15,73 @@ MOST_LOOKS = (
 )
 
 
-Solved = dict[tuple[tuple[Group, ...], tuple[float, ...]], list[int]]
+@dataclass(frozen=True, eq=False, slots=True)
+class Part:
+    """Groups that are all in one cluster, as one piece leads them: of each ink the best, with its gain (> 0).
+
+    Attributes:
+        groups, gains: one for each ink.  index: which of those that it was made of.
+        pieces: of all groups.
+    """
+
+    groups: list[Group]
+    gains: list[float]
+    index: list[int]
+    pieces: tuple[int, ...]
 
 
-def best_packing(groups: Sequence[Group], gains: Sequence[float], solved: Solved | None = None) -> list[int]:
+Solved = dict[tuple[Part, ...], list[tuple[int, int]]]
+
+
+def part(groups: Sequence[Group], gains: Sequence[float]) -> Part:
+    """The part of some groups; those that gain nothing are left out."""
+    best: dict[Group, int] = {}
+    for k, (group, gain) in enumerate(zip(groups, gains, strict=True)):
+        if gain > 0 and (group not in best or gain > gains[best[group]]):
+            best[group] = k
+    index = list(best.values())
+    return Part(list(best), [gains[k] for k in index], index, tuple({i for group in best for i in group}))
+
+
+def best_packing(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
     """Indices of pairwise disjoint groups whose gains (> 0) add up to the most.
 
     Ink that no chosen group has stays unexplained and gains nothing. Groups that share ink, however
     indirectly, form a cluster; each cluster is solved by branch and bound: take the first piece of ink
     still open, try every group that has it and leaving it out, and give up where even the best share of
     each remaining piece cannot win, or where the same pieces were settled before with no less gain.
-
-    solved: the clusters of the last packing, which are not solved again; replaced by those of this one.
     """
-    chosen: list[int] = []
+    by_first: dict[int, list[int]] = {}
+    for g, group in enumerate(groups):
+        by_first.setdefault(group[0], []).append(g)
+    numbers = list(by_first.values())
+    parts = [part([groups[g] for g in own], [gains[g] for g in own]) for own in numbers]
+    return [numbers[p][k] for p, k in best_parts(parts, {})]
+
+
+def best_parts(parts: Sequence[Part], solved: Solved) -> list[tuple[int, int]]:
+    """As `best_packing`, of the groups of some parts: the part, and the index in it, of each chosen one.
+
+    solved: the clusters of the last time, which are not solved again; replaced by those of this one.
+    """
+    chosen: list[tuple[int, int]] = []
     now: Solved = {}
-    for cluster in _clusters(groups):
-        its_groups = tuple(groups[g] for g in cluster)
-        its_gains = tuple(gains[g] for g in cluster)
-        key = its_groups, its_gains
-        best = solved.get(key) if solved else None
-        now[key] = best = _solve(its_groups, its_gains) if best is None else best
-        chosen += [cluster[k] for k in best]
-    if solved is not None:
-        solved.clear()
-        solved.update(now)
+    for cluster in _clusters(parts):
+        key = tuple(parts[p] for p in cluster)
+        best = solved.get(key)
+        if best is None:
+            at = [(q, k) for q, own in enumerate(key) for k in range(len(own.groups))]
+            packed = _solve([g for own in key for g in own.groups], [v for own in key for v in own.gains])
+            best = [at[g] for g in packed]
+        now[key] = best
+        chosen += [(cluster[q], key[q].index[k]) for q, k in best]
+    solved.clear()
+    solved.update(now)
     return chosen
 
 
-def _clusters(groups: Sequence[Group]) -> list[list[int]]:
+def _clusters(parts: Sequence[Part]) -> list[list[int]]:
+    """The parts that share ink, however indirectly."""
     parent: dict[int, int] = {}
 
     def root(i: int) -> int:
@@ -50,16 +89,15 @@ def _clusters(groups: Sequence[Group]) -> list[list[int]]:
             parent[i] = i = parent[parent[i]]
         return i
 
-    distinct = dict.fromkeys(groups)  # one ink has several readings
-    for group in distinct:
-        first = group[0]
+    live = [p for p, own in enumerate(parts) if own.groups]
+    for p in live:
+        first, *others = parts[p].pieces
         at = root(parent.setdefault(first, first))
-        for i in group[1:]:
+        for i in others:
             parent[root(parent.setdefault(i, i))] = at
     clusters: dict[int, list[int]] = {}
-    of = {group: clusters.setdefault(root(group[0]), []) for group in distinct}
-    for g, group in enumerate(groups):
-        of[group].append(g)
+    for p in live:
+        clusters.setdefault(root(parts[p].pieces[0]), []).append(p)
     return list(clusters.values())
 
 
