@@ -34,7 +34,7 @@ from sketch.proposals import Proposals, Proposed, proposing
 from sketch.reading import Reading, scored
 from sketch.sampling import sampled
 from sketch.scoring import Fitted
-from sketch.search import Part, Solved, best_parts, part
+from sketch.search import Packing, Part, part
 
 __all__ = ["Reading", "Recognition", "Recognizer", "recognize"]
 
@@ -96,8 +96,8 @@ class Recognizer:
         self._canvas = sketch
         self._proposals = Proposals(math.hypot(sketch.width or 0.0, sketch.height or 0.0))
         self._context = Context()
-        self._alone: Solved = {}
-        self._together: Solved = {}
+        self._alone = Packing()
+        self._together = Packing()
         self._parts: dict[
             Proposed, tuple[list[float], Part]
         ] = {}  # gains with all that is around, and of these
@@ -182,7 +182,7 @@ class Recognizer:
         proposed = self._proposals.all()
         if forced:
             proposed = _with_forced(self._proposals.page, proposed, forced)
-        likely: list[Pick] = best_parts([p.alone for p in proposed], self._alone)
+        likely: list[Pick] = self._alone.best([p.alone for p in proposed])
         told = self._context.told(proposed, likely, self._proposals.page.size)
         known, self._parts = self._parts, {}
         for p, gains in zip(proposed, told, strict=True):
@@ -190,7 +190,7 @@ class Recognizer:
             if there is None or there[0] != gains:
                 there = gains, part([c.pieces for c in p.candidates], gains)
             self._parts[p] = there
-        best = best_parts([self._parts[p][1] for p in proposed], self._together)
+        best = self._together.best([self._parts[p][1] for p in proposed])
         return proposed, told, _one_a_place([(proposed[p].candidates[k], told[p][k]) for p, k in best])
 
 

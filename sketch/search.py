@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["Part", "Solved", "best_packing", "best_parts", "part"]
+__all__ = ["Packing", "Part", "best_packing", "part"]
 
 Group = tuple[int, ...]  # of pieces of ink
+Packed = tuple[Group, float]  # and what it gains
 
 MOST_PIECES = 400  # in one cluster: beyond, it is shading, and the best groups are taken one after another
 MOST_LOOKS = (
@@ -19,18 +20,25 @@ MOST_LOOKS = (
 class Part:
     """Groups that are all in one cluster, as one piece leads them: of each ink the best, with its gain (> 0).
 
+    Parts with the same groups and gains are equal.
+
     Attributes:
         groups, gains: one for each ink.  index: which of those that it was made of.
         pieces: of all groups.
+        known_by: its hash: it is asked for at every stroke.
     """
 
-    groups: list[Group]
-    gains: list[float]
-    index: list[int]
+    groups: tuple[Group, ...]
+    gains: tuple[float, ...]
+    index: tuple[int, ...]
     pieces: tuple[int, ...]
+    known_by: int
 
+    def __hash__(self) -> int:
+        return self.known_by
 
-Solved = dict[tuple[Part, ...], list[tuple[int, int]]]
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Part) and (self.groups, self.gains) == (other.groups, other.gains)
 
 
 def part(groups: Sequence[Group], gains: Sequence[float]) -> Part:
@@ -39,49 +47,68 @@ def part(groups: Sequence[Group], gains: Sequence[float]) -> Part:
     for k, (group, gain) in enumerate(zip(groups, gains, strict=True)):
         if gain > 0 and (group not in best or gain > gains[best[group]]):
             best[group] = k
-    index = list(best.values())
-    return Part(list(best), [gains[k] for k in index], index, tuple({i for group in best for i in group}))
+    index, inks = tuple(best.values()), tuple(best)
+    its = tuple(gains[k] for k in index)
+    return Part(inks, its, index, tuple({i for group in inks for i in group}), hash((inks, its)))
 
 
 def best_packing(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
-    """Indices of pairwise disjoint groups whose gains (> 0) add up to the most.
-
-    Ink that no chosen group has stays unexplained and gains nothing. Groups that share ink, however
-    indirectly, form a cluster; each cluster is solved by branch and bound: take the first piece of ink
-    still open, try every group that has it and leaving it out, and give up where even the best share of
-    each remaining piece cannot win, or where the same pieces were settled before with no less gain.
-    """
+    """Indices of pairwise disjoint groups whose gains (> 0) add up to the most; ink that no chosen group has stays
+    unexplained, and gains nothing."""
     by_first: dict[int, list[int]] = {}
     for g, group in enumerate(groups):
         by_first.setdefault(group[0], []).append(g)
     numbers = list(by_first.values())
     parts = [part([groups[g] for g in own], [gains[g] for g in own]) for own in numbers]
-    return [numbers[p][k] for p, k in best_parts(parts, {})]
+    return [numbers[p][k] for p, k in Packing().best(parts)]
 
 
-def best_parts(parts: Sequence[Part], solved: Solved) -> list[tuple[int, int]]:
-    """As `best_packing`, of the groups of some parts: the part, and the index in it, of each chosen one.
+class Packing:
+    """The best packing of a page whose groups change a little at a time: what did not change is not solved again.
 
-    solved: the clusters of the last time, which are not solved again; replaced by those of this one.
+    Groups that share ink, however indirectly, form a cluster, which is solved by itself. A group in whose ink others
+    gain no less is in no best packing; without those most clusters fall apart.
     """
-    chosen: list[tuple[int, int]] = []
-    now: Solved = {}
-    for cluster in _clusters(parts):
-        key = tuple(parts[p] for p in cluster)
-        best = solved.get(key)
-        if best is None:
-            at = [(q, k) for q, own in enumerate(key) for k in range(len(own.groups))]
-            packed = _solve([g for own in key for g in own.groups], [v for own in key for v in own.gains])
-            best = [at[g] for g in packed]
-        now[key] = best
-        chosen += [(cluster[q], key[q].index[k]) for q, k in best]
-    solved.clear()
-    solved.update(now)
-    return chosen
+
+    def __init__(self) -> None:
+        self._clusters: dict[tuple[Part, ...], list[tuple[int, int]]] = {}
+        self._packed: dict[tuple[Packed, ...], list[int]] = {}
+
+    def best(self, parts: Sequence[Part]) -> list[tuple[int, int]]:
+        """As `best_packing`, of the groups of some parts: the part, and the index in it, of each chosen one."""
+        chosen: list[tuple[int, int]] = []
+        clusters, self._clusters = self._clusters, {}
+        packed, self._packed = self._packed, {}
+        for cluster in _clusters([own.pieces for own in parts]):
+            key = tuple(parts[p] for p in cluster)
+            best = clusters.get(key)
+            if best is None:
+                at = [(q, k) for q, own in enumerate(key) for k in range(len(own.groups))]
+                best = [
+                    at[g]
+                    for g in self._solve(
+                        [g for own in key for g in zip(own.groups, own.gains, strict=True)], packed
+                    )
+                ]
+            self._clusters[key] = best
+            chosen += [(cluster[q], key[q].index[k]) for q, k in best]
+        return chosen
+
+    def _solve(self, groups: list[Packed], known: dict[tuple[Packed, ...], list[int]]) -> list[int]:
+        """The best packing of a cluster, as indices."""
+        groups_left = _not_outdone(groups)
+        chosen = []
+        for cluster in _clusters([groups[g][0] for g in groups_left]):
+            its = [groups_left[k] for k in cluster]
+            key = tuple(groups[g] for g in its)
+            best = known.get(key)
+            self._packed[key] = best = _packed(key) if best is None else best
+            chosen += [its[k] for k in best]
+        return chosen
 
 
-def _clusters(parts: Sequence[Part]) -> list[list[int]]:
-    """The parts that share ink, however indirectly."""
+def _clusters(inks: Sequence[Group]) -> list[list[int]]:
+    """Those that share ink, however indirectly; without those that have none."""
     parent: dict[int, int] = {}
 
     def root(i: int) -> int:
@@ -89,49 +116,98 @@ def _clusters(parts: Sequence[Part]) -> list[list[int]]:
             parent[i] = i = parent[parent[i]]
         return i
 
-    live = [p for p, own in enumerate(parts) if own.groups]
-    for p in live:
-        first, *others = parts[p].pieces
+    live = [k for k, ink in enumerate(inks) if ink]
+    for k in live:
+        first, *others = inks[k]
         at = root(parent.setdefault(first, first))
         for i in others:
             parent[root(parent.setdefault(i, i))] = at
     clusters: dict[int, list[int]] = {}
-    for p in live:
-        clusters.setdefault(root(parts[p].pieces[0]), []).append(p)
+    for k in live:
+        clusters.setdefault(root(inks[k][0]), []).append(k)
     return list(clusters.values())
 
 
-def _greedy(cluster: list[int], groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
+def _not_outdone(groups: list[Packed]) -> list[int]:
+    """The groups in whose ink no others, that leave one another's ink alone, are found to gain as much."""
+    best: dict[Group, int] = {}
+    for g, (ink, gain) in enumerate(groups):
+        if ink not in best or gain > groups[best[ink]][1]:
+            best[ink] = g
+    order = sorted(best.values(), key=lambda g: -groups[g][1])
+    bit = {i: 1 << k for k, i in enumerate({i for ink in best for i in ink})}
+    mask = {g: sum(map(bit.__getitem__, groups[g][0])) for g in order}
+    on: dict[int, list[tuple[int, float]]] = {i: [] for i in bit}
+    for g in order:
+        for i in groups[g][0]:
+            on[i].append((mask[g], groups[g][1]))
+    kept = []
+    for g in best.values():
+        ink, gain = groups[g]
+        left, within = mask[g], 0.0
+        for i in ink if len(ink) > 1 else ():
+            if left & bit[i]:
+                for other, its in on[i]:
+                    if not other & ~left and other != mask[g]:
+                        left, within = left ^ other, within + its
+                        break
+        if within < gain:
+            kept.append(g)
+    return kept
+
+
+def _swept(inks: list[Group]) -> list[int]:
+    """Pieces of ink in an order in which those that share groups are near one another (Cuthill and McKee 1969): few
+    are half decided at any time."""
+    near: dict[int, set[int]] = {}
+    for ink in inks:
+        for i in ink:
+            near.setdefault(i, set()).update(ink)
+    out: list[int] = []
+    for _ in range(2):  # begun anew from the far end
+        out = [out[-1]] if out else [min(near, key=lambda i: (len(near[i]), i))]
+        seen = set(out)
+        for i in out:
+            new = sorted(near[i] - seen, key=lambda j: (len(near[j]), j))
+            out += new
+            seen.update(new)
+    return out
+
+
+def _greedy(groups: Sequence[Packed]) -> list[int]:
     """The groups of a cluster, the best first, as far as each leaves the others' ink alone."""
     taken: set[int] = set()
     out = []
-    for g in sorted(cluster, key=lambda g: -gains[g]):
-        if taken.isdisjoint(groups[g]):
-            taken.update(groups[g])
+    for g in sorted(range(len(groups)), key=lambda g: -groups[g][1]):
+        if taken.isdisjoint(groups[g][0]):
+            taken.update(groups[g][0])
             out.append(g)
     return out
 
 
-def _solve(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
-    best_of: dict[Group, int] = {}  # of readings of the same ink only the best can be chosen
-    for g in sorted(range(len(groups)), key=lambda g: -gains[g]):
-        best_of.setdefault(groups[g], g)
-    cluster = list(best_of.values())
-    if len(cluster) == 1:
-        return cluster
-    bit = {i: 1 << k for k, i in enumerate(sorted({i for group in best_of for i in group}))}
-    if len(bit) > MOST_PIECES:
-        return _greedy(cluster, groups, gains)
+def _packed(groups: Sequence[Packed]) -> list[int]:
+    """The best packing of a cluster by branch and bound, as indices.
+
+    Take the first piece of ink still open, try every group that has it and leaving it out, and give up where even
+    the best share of each remaining piece cannot win, or where the same pieces were settled before with no less gain.
+    """
+    if len(groups) == 1:
+        return [0]
+    order = _swept([ink for ink, _ in groups])
+    if len(order) > MOST_PIECES:
+        return _greedy(groups)
+    bit = {i: 1 << k for k, i in enumerate(order)}
     every = (1 << len(bit)) - 1
     share = dict.fromkeys(bit, 0.0)  # the most that a piece can bring: a group's gain split evenly
-    for g in cluster:
-        for i in groups[g]:
-            share[i] = max(share[i], gains[g] / len(groups[g]))
+    for ink, gain in groups:
+        for i in ink:
+            share[i] = max(share[i], gain / len(ink))
     # For each piece the groups that have it, the best first: index, pieces as bits, gain, hope given up.
     choices: dict[int, list[tuple[int, int, float, float]]] = {b: [] for b in bit.values()}
-    for g in cluster:
-        choice = (g, sum(bit[i] for i in groups[g]), gains[g], sum(share[i] for i in groups[g]))
-        for i in groups[g]:
+    for g in sorted(range(len(groups)), key=lambda g: -groups[g][1]):
+        ink, gain = groups[g]
+        choice = (g, sum(bit[i] for i in ink), gain, sum(share[i] for i in ink))
+        for i in ink:
             choices[bit[i]].append(choice)
     share_of = {bit[i]: hope for i, hope in share.items()}
     best, best_set = -1.0, list[int]()
@@ -160,7 +236,7 @@ def _solve(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
 
     branch(0, 0.0, sum(share.values()))
     if looked > MOST_LOOKS:
-        greedy = _greedy(cluster, groups, gains)
-        if sum(gains[g] for g in greedy) > best:
+        greedy = _greedy(groups)
+        if sum(groups[g][1] for g in greedy) > best:
             return greedy
     return best_set
