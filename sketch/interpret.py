@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sim.scene import Joint, Scene, View
 from sketch.bodies import Bodies, Drawn, draw_body, touch
 from sketch.ink import Sketch
+from sketch.kernel import depth
 from sketch.reading import Reading
 from sketch.tidy import close_gaps, straighten
 
@@ -207,7 +208,7 @@ def _near(circle: Drawn, at: Array, reach: float, bodies: Bodies) -> list[tuple[
         for d in bodies.near(at, reach)
         if d is not circle and d.reading.solid and radius < 2 * JOINS * d.size
     ]
-    near = [(depth, d) for d in large if (depth := d.depth(at)) < reach]
+    near = [(off, d) for d in large if (off := d.depth(at)) < reach]
     return sorted(near, key=lambda t: t[0])
 
 
@@ -233,13 +234,10 @@ def _axle(wheel: Drawn, circle: Drawn, at: Array, radius: float, bodies: Bodies)
 
 def _off_ink(sketch: Sketch, d: Drawn, at: Array) -> float:
     """The distance of a point from the ink that a body was drawn with [pixels]."""
-    best = math.inf
-    for s in d.reading.strokes:
-        a, b = sketch.strokes[s].points[:-1, :2], sketch.strokes[s].points[1:, :2]
-        along, to = b - a, at - a
-        t = np.clip((to * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-12), 0, 1)
-        best = min(best, float(np.hypot(*(to - t[:, None] * along).T).min(initial=math.inf)))
-    return best
+    x, y = at.tolist()
+    inks = (sketch.strokes[s].points[:, :2] for s in d.reading.strokes)
+    there_and_back = (np.concatenate([ink, ink[-2:0:-1]]) for ink in inks)  # closed, around nothing
+    return min((abs(depth(x, y, ink)) for ink in there_and_back), default=math.inf)
 
 
 def _ids(bodies: list[Drawn]) -> str:

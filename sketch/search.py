@@ -11,6 +11,8 @@ Group = tuple[int, ...]  # of pieces of ink
 Packed = tuple[Group, float]  # and what it gains
 
 MOST_PIECES = 400  # in one cluster: beyond, it is shading, and the best groups are taken one after another
+MOST_TRIED = 24  # groups of a piece, the best by the piece, that may outdo another
+ROUNDS = 2  # of lowering the pieces' shares in what a packing may gain
 MOST_LOOKS = (
     100_000  # at groups, in one cluster: shading and grids, where no set is right, end with the best so far
 )
@@ -134,13 +136,14 @@ def _not_outdone(groups: list[Packed]) -> list[int]:
     for g, (ink, gain) in enumerate(groups):
         if ink not in best or gain > groups[best[ink]][1]:
             best[ink] = g
-    order = sorted(best.values(), key=lambda g: -groups[g][1])
+    order = sorted(best.values(), key=lambda g: -groups[g][1] / len(groups[g][0]))
     bit = {i: 1 << k for k, i in enumerate({i for ink in best for i in ink})}
     mask = {g: sum(map(bit.__getitem__, groups[g][0])) for g in order}
     on: dict[int, list[tuple[int, float]]] = {i: [] for i in bit}
     for g in order:
         for i in groups[g][0]:
-            on[i].append((mask[g], groups[g][1]))
+            if len(on[i]) < MOST_TRIED:
+                on[i].append((mask[g], groups[g][1]))
     kept = []
     for g in best.values():
         ink, gain = groups[g]
@@ -185,6 +188,28 @@ def _greedy(groups: Sequence[Packed]) -> list[int]:
     return out
 
 
+def _shares(groups: Sequence[Packed]) -> dict[int, float]:
+    """What each piece can bring, so that no group gains more than its pieces' shares: no packing gains more than all.
+
+    Groups' gains split evenly, and then each piece's share lowered as far as the others' allow (the packing's linear
+    dual, descended along its coordinates).
+    """
+    on: dict[int, list[int]] = {}
+    share: dict[int, float] = {}
+    for g, (ink, gain) in enumerate(groups):
+        for i in ink:
+            on.setdefault(i, []).append(g)
+            share[i] = max(share.get(i, 0.0), gain / len(ink))
+    spare = [sum(share[i] for i in ink) - gain for ink, gain in groups]
+    for _ in range(ROUNDS):
+        for i, its in on.items():
+            less = min(share[i], min(spare[g] for g in its))
+            share[i] -= less
+            for g in its:
+                spare[g] -= less
+    return share
+
+
 def _packed(groups: Sequence[Packed]) -> list[int]:
     """The best packing of a cluster by branch and bound, as indices.
 
@@ -198,10 +223,7 @@ def _packed(groups: Sequence[Packed]) -> list[int]:
         return _greedy(groups)
     bit = {i: 1 << k for k, i in enumerate(order)}
     every = (1 << len(bit)) - 1
-    share = dict.fromkeys(bit, 0.0)  # the most that a piece can bring: a group's gain split evenly
-    for ink, gain in groups:
-        for i in ink:
-            share[i] = max(share[i], gain / len(ink))
+    share = _shares(groups)
     # For each piece the groups that have it, the best first: index, pieces as bits, gain, hope given up.
     choices: dict[int, list[tuple[int, int, float, float]]] = {b: [] for b in bit.values()}
     for g in sorted(range(len(groups)), key=lambda g: -groups[g][1]):
