@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from sketch.search import best_packing
+from sketch.search import Packing, best_packing, part
 
 
 def brute(groups: list[tuple[int, ...]], gains: list[float]) -> float:
@@ -36,3 +36,37 @@ def test_no_other_set_gains_more(seed: int) -> None:
 
 def test_nothing_is_the_best_of_nothing() -> None:
     assert best_packing([], []) == []
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_long_row_in_any_order_is_packed_exactly(seed: int) -> None:
+    """Of groups of neighbours in a row the best packing is known from left to right, however they are numbered."""
+    rng = np.random.default_rng(seed)
+    count = 120
+    number = rng.permutation(count).tolist()
+    spans = [(a, a + int(w)) for a in range(count) for w in rng.integers(1, 6, 4) if a + w <= count]
+    gains = rng.uniform(1, 50, len(spans)).tolist()
+    best = [0.0] * (count + 1)
+    for end in range(1, count + 1):
+        through = [best[a] + gain for (a, b), gain in zip(spans, gains, strict=True) if b == end]
+        best[end] = max([best[end - 1], *through])
+    groups = [tuple(sorted(number[a:b])) for a, b in spans]
+    chosen = best_packing(groups, gains)
+    ink = [i for g in chosen for i in groups[g]]
+    assert len(ink) == len(set(ink))
+    assert sum(gains[g] for g in chosen) == pytest.approx(best[count])
+
+
+def test_what_changed_is_packed_anew_and_the_rest_kept() -> None:
+    rng = np.random.default_rng(3)
+    page = Packing()
+    groups = [tuple(sorted({int(a), int(a + b)})) for a, b in rng.integers(0, 12, (60, 2))]
+    for _ in range(20):
+        gains = rng.uniform(-10, 50, len(groups)).tolist()
+        by_lead = [[k for k, g in enumerate(groups) if g[0] == lead] for lead in range(24)]
+        parts = [part([groups[k] for k in own], [gains[k] for k in own]) for own in by_lead]
+        chosen = [by_lead[p][k] for p, k in page.best(parts)]
+        live = [k for k, gain in enumerate(gains) if gain > 0]
+        afresh = best_packing([groups[k] for k in live], [gains[k] for k in live])
+        assert sorted(chosen) == sorted(live[k] for k in afresh)
+        assert page.best(parts) == page.best(parts)
