@@ -15,6 +15,7 @@ Points = NDArray[np.float64]
 
 CUT = 1.0  # pen widths to either side of a corner that thinning bends
 SIDE = 2.0  # pen widths of each side, beyond, that show where it leads
+FEWEST = 3  # points of each at least
 SHARP = 0.6  # [rad] that a corner turns by at least: those of a hexagon by 1.05
 SHARPER = 2.0  # times that it turns more than its sides do on the same length: a small circle's would not
 STRAIGHT = 0.15  # pen widths that a side may be off a line
@@ -26,8 +27,10 @@ def sharpen_corners(graph: Graph, distance: NDArray[Any], pen: float) -> None:
 
     distance: each pixel's distance to the paper, shape (h, w).  pen: the width of the pen [pixels].
     """
-    cut, side = round(CUT * pen), max(round(SIDE * pen), 3)
     for edge in graph.edges:
+        x, y = np.round(edge.points).astype(int).T
+        wide = max(pen, 2 * float(np.median(distance[y, x])))  # a slow pen draws wider
+        cut, side = round(CUT * wide), max(round(SIDE * wide), 3)
         closed = edge.ends == RING
         points = edge.points[:-1] if closed else edge.points
         if len(points) < 2 * (cut + side) + 3:
@@ -36,7 +39,7 @@ def sharpen_corners(graph: Graph, distance: NDArray[Any], pen: float) -> None:
             around = np.ones(2 * (cut + side) + 1)
             turn = np.convolve(np.pad(_turns(points, cut, True), cut + side, "wrap"), around, "valid")
             points = np.roll(points, -int(np.argmin(turn)), axis=0)
-        points = _sharpened(points, distance, pen, cut, side)
+        points = _sharpened(points, distance, wide, cut, side)
         edge.points = np.concatenate([points, points[:1]]) if closed else points
 
 
@@ -66,16 +69,18 @@ def _sharpened(points: Points, distance: NDArray[Any], pen: float, cut: int, sid
     turn = _turns(points, cut, False)
     pieces, done = [], 0
     at = np.flatnonzero(turn > SHARP)
-    for group in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1):
-        if not len(group):
-            continue
-        k = int(group[np.argmax(turn[group])])
-        if k - cut - side < done or k + cut + side >= len(points):
+    groups = [group for group in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if len(group)]
+    corners = [int(group[np.argmax(turn[group])]) for group in groups]
+    for before, k, after in zip([-cut, *corners], corners, [*corners[1:], len(points) + cut], strict=False):
+        first = max(k - cut - side, before + cut, done)
+        last = min(k + cut + side, after - cut, len(points) - 1)
+        if k - cut - first < FEWEST or last - k - cut < FEWEST:
             continue
         along = cut + side // 2
-        if turn[k] < SHARPER * (turn[k - along] + turn[k + along]) / 2:
+        beside = turn[max(k - along, 0)] + turn[min(k + along, len(points) - 1)]
+        if turn[k] < SHARPER * beside / 2:
             continue
-        corner = _meeting(points[k - cut - side : k - cut + 1], points[k + cut : k + cut + side + 1], pen)
+        corner = _meeting(points[first : k - cut + 1], points[k + cut : last + 1], pen)
         if corner is None or np.hypot(*(corner - points[k])) > 2 * CUT * pen:
             continue
         x, y = np.round(corner).astype(int)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sketch.scan.binding import distances, thin, trace
 from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.crossed import crossed
+from sketch.scan.faces import standing
 from sketch.scan.grain import smoothed_grain
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.overlaps import overlapping
@@ -19,6 +20,8 @@ from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_ma
 from sketch.scan.ridge import centre_on_ink
 from sketch.scan.rings import find_rings, take_rings
 from sketch.scan.settle import settle
+from sketch.scan.sheet import Sheet, bridged
+from sketch.scan.stretches import Stretches
 from sketch.scan.tails import with_tails
 from sketch.scan.ways import Way, Ways
 
@@ -156,8 +159,12 @@ def _strokes(seen: Traced) -> list[Points]:
             known = {frozenset(way.ink) for way in likeliest + others}
             more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
             others += [_drawn(way, seen) for way in more]
+    round_ways = [ring.points for ring in found]
+    sheets = [Sheet(edges, round_ways, pen) for edges in (bridged(drawn, pen), drawn.edges)]
+    stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
+    others += [_drawn(way, seen) for way in standing(sheets, stretches)]
     others += with_tails(likeliest + others, pen * seen.scale)
-    overlaps = [_drawn(way, seen) for way in overlapping(drawn, found, graph.edges, pen)]
+    overlaps = [_drawn(way, seen) for way in overlapping(sheets[0], round_ways, stretches)]
     others += [_drawn(way, seen) for way in crossed(drawn, first, distance, pen)]
     if others or overlaps:
         height, width = mask.shape

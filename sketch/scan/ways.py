@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.courses import Course, Links, follow, through
-from sketch.scan.faces import faces, shared_sides
 from sketch.scan.graph import Graph, Ink
 from sketch.scan.junctions import find_junctions
 from sketch.scan.outlines import Choice, close_outlines
@@ -102,7 +101,6 @@ class Ways:
                 out += [self._way(course, self._smoothest), *self._closed(course, self._smoothest)]
         for course, links, strain in unlifted(self._layout, self._inner):
             out.append(replace(self._way(course, links), strain=strain))
-        out += self._faces()
         for choices in _combined(self._choices):
             links = dict(self._links)
             for choice in choices:
@@ -117,18 +115,6 @@ class Ways:
                         continue
                     seen.add(signature)
                     out += [self._way(course, links), *self._closed(course, links)]
-        return out
-
-    def _faces(self) -> list[Way]:
-        """The outlines of pieces of paper that lines enclose, each with all its ink, and without sides of others."""
-        out = []
-        found = faces(self._junctions, self._layout)
-        for k, face in enumerate(found):
-            for lent in [frozenset[int](), *shared_sides(found, k)]:
-                ink: Ink = {}
-                for e in face.edges - lent:
-                    ink.update(self._graph.edges[e].ink)
-                out.append(Way(face.points, ink, face.strain))
         return out
 
     def _closed(self, course: Course, links: Links) -> list[Way]:

@@ -14,9 +14,12 @@ from sim.scene import Polygon, Rectangle, Scene
 from sketch.recognize import recognize
 from sketch.scan import read_picture
 from sketch.scan.binding import thin, trace
+from sketch.scan.faces import standing
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.overlaps import overlapping
 from sketch.scan.rings import find_rings
+from sketch.scan.sheet import Sheet, bridged
+from sketch.scan.stretches import Stretches
 from sketch.scan.ways import Way
 
 Points = NDArray[np.float64]
@@ -57,15 +60,23 @@ def read(lines: list[Points]) -> Scene:
     return recognize(read_picture(encoded(drawn(inked(lines), noise=1.5)))).scene
 
 
-def looked_at(lines: list[Points]) -> tuple[Graph, list[Way]]:
-    """The graph of some lines, each edge with its ink, and the rings among them."""
+def looked_at(lines: list[Points]) -> tuple[Graph, list[Points]]:
+    """The graph of some lines and the rings among them."""
     mask = (inked(lines) > 0.5).astype(np.uint8)
     skeleton, size = thin(mask)
     distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     graph = build_graph(trace(skeleton, size), distance, PEN)
-    for name, edge in enumerate(graph.edges):
-        edge.ink = {name: edge.points}
-    return graph, find_rings(mask, distance, PEN)
+    return graph, [found.points for found in find_rings(mask, distance, PEN)]
+
+
+def offered(graph: Graph, rings: list[Points]) -> list[Way]:
+    sheet = Sheet(bridged(graph, PEN), rings, PEN)
+    return overlapping(sheet, rings, ink_of(graph))
+
+
+def ink_of(graph: Graph) -> Stretches:
+    """Each edge as a stretch of ink."""
+    return Stretches({name: edge.points for name, edge in enumerate(graph.edges)}, PEN)
 
 
 ROW = [(80.0, 200.0), (270.0, 204.0), (460.0, 199.0), (650.0, 203.0)]
@@ -88,7 +99,7 @@ def test_overlapping_outlines_are_those_drawn_and_share_their_ink_out(
 ) -> None:
     lines = chain(joints)
     graph, rings = looked_at(lines)
-    ways = overlapping(graph, rings, graph.edges, PEN)
+    ways = offered(graph, rings)
     count = len(joints) - 1
     for outline in lines[:count]:
         box = np.concatenate([outline.min(axis=0), outline.max(axis=0)])
@@ -103,8 +114,36 @@ def test_overlapping_outlines_are_those_drawn_and_share_their_ink_out(
 def test_without_a_ring_or_without_an_overlap_nothing_is_offered() -> None:
     lines = chain(ROW)
     graph, rings = looked_at(lines[:3])
-    assert overlapping(graph, rings, graph.edges, PEN) == []
+    assert offered(graph, rings) == []
     alone = [rod(np.array([100.0, 200.0]), np.array([400.0, 200.0])), ring(np.array([200.0, 200.0]))]
     graph, rings = looked_at(alone)
     assert rings
-    assert overlapping(graph, rings, graph.edges, PEN) == []
+    assert offered(graph, rings) == []
+
+
+BASE = np.array([(60.0, 300), (500, 300), (500, 360), (60, 360), (60, 300)])
+
+
+@pytest.mark.parametrize("gap", [0.0, 8.0], ids=["closed", "with a gap"])
+def test_a_box_that_shares_its_base_is_offered_even_with_a_gap(gap: float) -> None:
+    box = np.array([(200.0, 300), (200, 220), (290 - gap, 220), (290, 220 + gap), (380, 220), (380, 300)])
+    lines = [BASE, box[:3], np.concatenate([[(290.0, 220)], box[4:]])]
+    graph, _ = looked_at(lines)
+    sheets = [Sheet(edges, [], PEN) for edges in (bridged(graph, PEN), graph.edges)]
+    boxes = [
+        np.concatenate([w.points.min(axis=0), w.points.max(axis=0)]) for w in standing(sheets, ink_of(graph))
+    ]
+    for outline in (box, BASE):
+        wanted = np.concatenate([outline.min(axis=0), outline.max(axis=0)])
+        assert min(np.abs(found - wanted).max() for found in boxes) < PEN
+
+
+def test_a_face_of_lines_that_cross_is_strained() -> None:
+    """Two lines that go on beyond a base end nowhere at it."""
+    for ends, strained in ((300.0, 2.5), (330.0, 5.0)):
+        sides = np.array([(200.0, ends), (200, 220), (380, 220), (380, ends)])
+        graph, _ = looked_at([BASE, sides])
+        found = standing([Sheet(graph.edges, [], PEN)], ink_of(graph))
+        strain = [way.strain for way in found if abs(way.points[:, 1].min() - 220) < PEN]
+        assert strain
+        assert (min(strain) > 5.0) if strained == 5.0 else (max(strain) < 2.5)
