@@ -23,6 +23,8 @@ WIDE = 0.1  # of a chain's ink
 PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
+FINE = 8  # steps, at least, in which the way over other ink is looked for, from end to end,
+MOST_STEPS = 1000  # but not more than so many of all of that ink
 DETOUR = 1.5  # of that distance: the longest way over other ink
 STRAIGHT = 0.03  # of its length, what a stroke bends that may be a part of a straight line,
 ALIKE = 0.2  # and by how much more of it turns off the other [rad]
@@ -43,14 +45,14 @@ def closing_chains(page: Page, start: int) -> list[tuple[float, Chain]]:
 
 def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
     """Other pieces that an open one ends on with both ends, and their ink between these: a side that is shared."""
-    if p.length < BENT * p.gap:
+    if p.length < BENT * p.gap or not p.gap:
         return
     ends, reach = np.array(p.ends), ENDS_ON * p.length
     low, high = (ends.min(axis=0) - reach).tolist(), (ends.max(axis=0) + reach).tolist()
     for q in page.touching(*low, *high):
         if q is p or not page.apart(q.index, (p.index,)):
             continue
-        ink = page.strokes.samples[q.index]
+        ink = _course(page, q, p.gap / FINE)
         gaps = np.hypot(*(ink[:, None] - ends).transpose(2, 0, 1))
         to, at = gaps.argmin(axis=0).tolist()  # from its last end, over the other's ink, to its first
         if gaps.min(axis=0).max() > reach + q.length / len(ink) / 2:
@@ -60,6 +62,15 @@ def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
             count, step = len(ink) - count, -step
         if 0 < count * q.length / len(ink) < DETOUR * p.gap:
             yield q.index, ink[(to + step * np.arange(count + 1)) % len(ink)]
+
+
+def _course(page: Page, q: Piece, step: float) -> Array:
+    """A piece's ink in equal steps, of `step` at most unless it is very long [pixels], (n, 2)."""
+    if q.length <= step * len(page.strokes.samples[q.index]):
+        return np.asarray(page.strokes.samples[q.index])
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(q.points, axis=0).T))])
+    t = np.linspace(0, along[-1], min(math.ceil(q.length / step), MOST_STEPS))
+    return np.asarray(np.stack([np.interp(t, along, q.points[:, k]) for k in (0, 1)], axis=1))
 
 
 def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:
