@@ -12,6 +12,7 @@
 #define ROOT_TIME 1e-13  /* how exactly the end of a mode is found [s], and as a part of the time */
 #define SAFETY 0.9         /* of the length that would just do */
 #define FARTHEST 2.0       /* times the last step: beyond that, its start says little of a step */
+#define LAST_TERM 0.3      /* of the tolerance: how large an interpolation's last term may be */
 #define LONGEST 2.0       /* a step [s]: within it, the ends of contacts' modes are looked for at the stages */
 #define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
 
@@ -213,18 +214,23 @@ static void interpolate(const double at[3][3], double r, double *p) {
 }
 
 /* The same of a step that goes on from one of length `last`: through its ends and the start of the last one, each with speeds and
- * accelerations.  Positions are as good as the above, and free; speeds, their slopes, are somewhat worse within the step. */
-static void continue_dense(const Smooth *s, const System *system, double h, double last, Motion *motion) {
+ * accelerations.  That is free; speeds are the slopes of positions.  Whether its last terms are so small that nothing is
+ * missed by it. */
+static bool continue_dense(const Smooth *s, const System *system, double h, double last, Motion *motion) {
+    double largest = 0;
     for (int32_t i = 0; i < system->count; i++)
         for (int c = 0; c < 3; c++) {
             int32_t q = 6 * i + c, v = q + 3;
             const double at[3][3] = {{s->start[q], h * s->start[v], h * h * s->k[0][v]},
                                      {s->end[q], h * s->end[v], h * h * s->k[STAGES][v]},
                                      {s->before[q], h * s->before[v], h * h * s->slopes_before[v]}};
-            interpolate(at, last / h, motion[i].q[c]);
-            for (int d = 0; d < MOTION_DEGREE; d++) motion[i].v[c][d] = (d + 1) * motion[i].q[c][d + 1] / h;
+            double *p = motion[i].q[c], reach = c == 2 ? system->world->body[system->member[i]].reach : 1;
+            interpolate(at, last / h, p);
+            for (int d = 0; d < MOTION_DEGREE; d++) motion[i].v[c][d] = (d + 1) * p[d + 1] / h;
             motion[i].v[c][MOTION_DEGREE] = 0;
+            largest = fmax(largest, fabs(p[MOTION_DEGREE]) * reach);
         }
+    return largest <= LAST_TERM * s->tolerance;
 }
 
 static bool sticks(const Contact *c) { return c->active && c->slide == 0 && c->friction > 0; }
@@ -401,10 +407,8 @@ static int make_motions(Smooth *s, System *system, double from, double step, dou
     int status = SIM_OK;
     for (int32_t i = 0; i < system->count; i++)
         motion[i] = (Motion){.start = from, .end = from + step, .span = step, .degree = MOTION_DEGREE};
-    if (step <= FARTHEST * last && system->contact_count == 0) /* contacts' modes end within steps */
-        continue_dense(s, system, step, last, motion);
-    else
-        status = find_dense(s, system, step, motion);
+    bool free = step <= FARTHEST * last && system->contact_count == 0; /* contacts' modes end within steps */
+    if (!free || !continue_dense(s, system, step, last, motion)) status = find_dense(s, system, step, motion);
     for (int32_t i = 0; i < system->count; i++) motion[i].speed = motion_fastest(&motion[i]);
     return status;
 }
