@@ -150,6 +150,7 @@ static inline void finish(Contact *c, Meeting *m, double tangent, double change,
     m->velocity_b += both(c->inverse_mass_b) * impulse;
     m->spin_a -= c->inverse_moment_a * (twist_a + c->spin_ta * along);
     m->spin_b += c->inverse_moment_b * (twist_b + c->spin_tb * along);
+    if (c->rolling == 0) return;
     double limit = c->rolling * pressed;
     double twist = larger(-limit, smaller(limit, (m->spin_a - m->spin_b) * c->twist_mass));
     m->spin_a -= c->inverse_moment_a * twist;
