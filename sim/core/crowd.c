@@ -9,8 +9,9 @@ static const double MANY = 0.35;         /* of the bodies that move */
 static const double SUBSTEP = 1.0 / 240; /* [s]: the longest substep */
 static const double FALL = 1.0 / 24;     /* of the time in which a body falls by its own reach: likewise */
 static const double SHORTER = 1.0 / 16;  /* of the longest: the shortest */
-static const int32_t PASSES = 6;       /* between looks for new contacts, at most */
-static const int32_t LOOKS = 6;        /* of a substep, at most */
+static const int32_t FIRST_PASSES = 2; /* before the first look for new contacts, which are then solved with the rest */
+static const int32_t PASSES = 6; /* between other looks, at most */
+static const int32_t LOOKS = 6; /* of a substep, at most */
 
 /* The longest substep: what is strongly pulled, or small, does not go farther in it than others do for their size. */
 static double longest_substep(const World *world) {
@@ -97,10 +98,11 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     rows_weigh(rows, mover);
     rows_measure(rows, 0, mover, threshold);
     rows_warm_start(rows, 0, mover);
-    bool found = true;
-    for (int32_t look = 0; found && look < LOOKS && status == SIM_OK; look++) {
-        bool heated = true;
-        for (int32_t pass = 0; heated && pass < PASSES; pass++) {
+    bool found = true, heated = true; /* new contacts, and bodies that are still to give on what they got */
+    for (int32_t look = 0; (found || (heated && look == 1)) && look < LOOKS && status == SIM_OK; look++) {
+        int32_t passes = look == 0 ? FIRST_PASSES : PASSES;
+        heated = true;
+        for (int32_t pass = 0; heated && pass < passes; pass++) {
             pivots_solve(&crowd->pivots, mover);
             heated = rows_solve(rows, mover, dt, look == 0 && pass == 0);
         }

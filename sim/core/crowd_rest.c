@@ -7,7 +7,7 @@
 
 #include "crowd_parts.h"
 
-static const double STILL_TIME = 0.12;    /* [s] */
+static const double STILL_TIME = 0.1;     /* [s]: two frames of a slow crowd (crowd.c) */
 static const double KNOCK = 0.1;          /* of the speed of falling by its own reach: what a woken body passes on */
 static const double NUDGE = 3;            /* times what counts as still: what wakes a neighbour */
 static const double STILL_SHARE = 7e-3;   /* of a body's reach: what it may move in that time */
@@ -174,7 +174,7 @@ int rest_update(Crowd *crowd, World *world, double dt) {
     for (int32_t i = 0; i < world->body_count; i++) {
         if (!crowd_moves(world, i)) continue;
         int32_t r = root(crowd->island, i);
-        if (crowd->island_time[r] < STILL_TIME) continue;
+        if (crowd->island_time[r] < STILL_TIME * (1 - 1e-6)) continue;
         Body *body = &world->body[i];
         body->mode = MODE_REST;
         body->velocity = vec(0, 0);
