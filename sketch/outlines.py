@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -37,6 +38,9 @@ COURSE = 32  # corners that it is drawn with
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.c
 SHARED = 10.0  # nats that an outline is rarer of which a side is another's
 GAP = 4.0  # nats for each observation that an outline lacks
+SIDE = 0.18  # of an outline's ink where it is made even: a gap as wide as a side that nobody drew,
+TENTH = 0.12  # while it is no wider than this, as it is;
+OPEN = 0.7  # of the nats of its free ink: no outline at all, unless it has such a side
 CLEAN = 30.0  # nats that hardly any outline is said in fewer
 CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
 LEAST_AXIS = 0.002  # of the page: thinner outlines are judged as if they were this thick
@@ -55,16 +59,30 @@ def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fi
     names = tuple(sorted(i for i, _ in chain))
     count = sum(pieces[i].observations for i in names)
     parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in chain]
-    out = _read(page, names, parts, count, over)
-    closed = ring(parts[0], pieces[names[0]].length) if len(chain) == 1 and over is None else None
+    if over is not None:
+        return _read(page, names, [*parts, over], count, SHARED)
+    out = _read(page, names, parts, count)
+    least = min(f.cost for f in out)
+    p = pieces[names[0]]
+    if len(chain) > 1:
+        return out
+    if p.gap < TENTH * p.length and out[0].gap > SIDE and least > OPEN * p.unread:
+        # perhaps a short side lacks: it goes from end to end
+        side = [*parts, np.array([p.ends[1], p.ends[0]])]
+        bridged = [
+            replace(f, gap=out[0].gap)
+            for f in _read(page, names, side, count, GAP * count * p.gap / p.length)
+            if f.kind in ("polygon", "rectangle") and f.cost < least
+        ]
+        return bridged or out
+    closed = ring(parts[0], p.length)
     if closed is None:
         return out
     # what runs on beyond where the ends cross is said freely
-    tails = count * closed[1] / pieces[names[0]].length
-    least = min(f.cost for f in out)
+    tails = count * closed[1] / p.length
     if FREE * tails + CLEAN >= least:
         return out
-    other = _read(page, names, [closed[0]], count - tails, None, FREE * tails)
+    other = _read(page, names, [closed[0]], count - tails, FREE * tails)
     return other if min(f.cost for f in other) < least else out
 
 
@@ -73,22 +91,17 @@ def _read(
     names: tuple[int, ...],
     parts: list[Array],
     count: float,
-    over: Array | None,
-    beyond: float = 0.0,
+    besides: float = 0.0,
 ) -> list[Fitted]:
     """The readings of ink that goes once around.
 
-    beyond: nats to say the ink of these pieces that does not.
+    besides: nats to say what else there is: ink of these pieces that does not, or a side that is not theirs.
     """
     pieces = page.pieces
-    shared = 0.0
-    if over is not None:
-        parts.append(over)
-        shared = SHARED
     fit = fit_closed(
         parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(pieces[i].unread for i in names)
     )
-    gaps = GAP * count * fit.gap / fit.ink + shared + beyond
+    gaps = GAP * count * fit.gap / fit.ink + besides
     (p, q), (r, s) = fit.back.tolist()
     scale, narrow = math.sqrt(abs(p * s - q * r)), min(math.hypot(p, r), math.hypot(q, s))
     fitted = partial(Fitted, pieces=names, scale=scale, narrow=narrow, gap=fit.gap / fit.ink)

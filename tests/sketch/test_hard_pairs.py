@@ -208,6 +208,19 @@ def test_a_gap_of_a_tenth_of_the_outline() -> None:
         assert kinds(read([ring[: round(0.9 * len(ring))]])) == ["circle"]
 
 
+def test_a_long_box_may_lack_its_end_but_no_box_a_side() -> None:
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        plank = line(
+            turned([(200, 0), (-200, 0), (-200, 70), (200, 70)], 0.4, (500, 300)), HANDS["neat"], rng
+        )
+        assert kinds(read(plank)) == ["4-gon"]
+        end = line(turned([(204, 2), (202, 66)], 0.4, (500, 300)), HANDS["neat"], rng)
+        assert [r.strokes for r in read(plank, end).readings] == [(0, 1)]
+        cup = line([(200, 200), (200, 400), (400, 400), (400, 200)], HANDS["neat"], rng)
+        assert kinds(read(cup)) != ["4-gon"]
+
+
 def test_hooks_and_overshoots_do_not_move_a_side() -> None:
     from dataclasses import replace
 
