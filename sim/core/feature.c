@@ -48,20 +48,59 @@ static void turn_round(FeatureWalk *w) {
     w->point_at = w->other_at, w->other_at = at;
 }
 
+/* How far from a side, or a corner, a point may be whose feature is in reach. */
+static double farthest(const FeatureWalk *w) {
+    double radius = w->world->shape[w->point_shape].radius;
+    if (!w->on_sides) return w->above + radius + w->world->shape[w->other_shape].radius;
+    return fmax(w->above + radius, w->below) + w->beside;
+}
+
+static bool is_beyond(const Stretch *stretch, Vec from, double reach) {
+    Vec apart = vsub(stretch->centre, from);
+    reach += stretch->reach;
+    return vdot(apart, apart) > reach * reach;
+}
+
+/* The first from i on of a shape's vertices that is not in a stretch which is all farther than that from a point; or past the
+ * last, at the shape's count. */
+static int32_t skip_stretches(const World *world, const Shape *shape, int32_t i, Vec from, double reach) {
+    while (i % STRETCH == 0 && i < shape->count && is_beyond(&world->stretch[shape->first + i], from, reach))
+        i += STRETCH;
+    return i < shape->count ? i : shape->count;
+}
+
+/* The next vertex that may touch: one that bulges. */
+static int32_t next_point(const FeatureWalk *w) {
+    const Shape *points = &w->world->shape[w->point_shape], *other = &w->world->shape[w->other_shape];
+    int32_t i = w->i + 1;
+    Vec centre = points->count > LONG_OUTLINE ? unplace(w->point_at, place(w->other_at, other->centre)) : vec(0, 0);
+    for (; i < points->count && points->count > 1; i++) {
+        if (points->count > LONG_OUTLINE) i = skip_stretches(w->world, points, i, centre, other->reach + farthest(w));
+        if (i == points->count || !w->world->side[points->first + i].reflex) break;
+    }
+    return i;
+}
+
+/* The side, or corner, from j on that the point is tried on next; the other's count if none is left. */
+static int32_t next_other(const FeatureWalk *w, int32_t j) {
+    const Shape *other = &w->world->shape[w->other_shape];
+    return other->count > LONG_OUTLINE ? skip_stretches(w->world, other, j, w->point, farthest(w)) : j;
+}
+
 /* Go to the next pair of a point and what it is tried on. */
 static bool step_on(FeatureWalk *w) {
     const Shape *points = &w->world->shape[w->point_shape], *other = &w->world->shape[w->other_shape];
-    if (w->i >= 0 && ++w->j < other->count) return true;
-    do w->i++;
-    while (w->i < points->count && points->count > 1 && w->world->side[points->first + w->i].reflex);
-    if (w->i == points->count) {
-        if (w->turns_left == 0) return false;
-        turn_round(w);
-        return step_on(w);
+    if (w->i >= 0 && (w->j = next_other(w, w->j + 1)) < other->count) return true;
+    for (;;) {
+        w->i = next_point(w);
+        if (w->i == points->count) break;
+        w->point = unplace(w->other_at, place(w->point_at, w->world->vertex[points->first + w->i]));
+        w->j = next_other(w, 0);
+        if (w->j < other->count) return true;
     }
-    w->j = 0;
-    w->point = unplace(w->other_at, place(w->point_at, w->world->vertex[points->first + w->i]));
-    return true;
+    if (w->turns_left == 0) return false;
+    turn_round(w);
+    return step_on(w);
 }
 
 static bool is_in_reach(const FeatureWalk *w) {

@@ -88,6 +88,13 @@ int32_t touching_now(const World *world, int32_t body_a, const State *state_a, i
 
 /* ---------------------------------------------------------------- depth */
 
+/* Whether a stretch is farther from a point than what is nearest, and not where a ray from the point to the right can cross it. */
+static bool says_nothing(const Stretch *stretch, Vec point, double nearest) {
+    Vec apart = vsub(stretch->centre, point);
+    bool crosses = fabs(apart.y) <= stretch->reach && apart.x >= -stretch->reach;
+    return !crosses && vlength(apart) - stretch->reach > nearest;
+}
+
 /* How deep a disk about a point of the shape's frame is in a polygon; negative outside. */
 static double depth_in(const World *world, const Shape *shape, Vec point, double radius) {
     const Vec *v = &world->vertex[shape->first];
@@ -95,6 +102,10 @@ static double depth_in(const World *world, const Shape *shape, Vec point, double
     bool inside = false;
     double nearest = INFINITY;
     for (int32_t i = 0; i < shape->count; i++) {
+        while (shape->count > LONG_OUTLINE && i % STRETCH == 0 && i < shape->count &&
+               says_nothing(&world->stretch[shape->first + i], point, nearest))
+            i += STRETCH;
+        if (i >= shape->count) break;
         Vec a = v[i], b = v[(i + 1) % shape->count], to = vsub(point, a);
         double foot = fmin(fmax(vdot(to, side[i].along), 0), side[i].length);
         nearest = fmin(nearest, vlength(vsub(to, vscale(side[i].along, foot))));
@@ -107,7 +118,15 @@ static double depth_in(const World *world, const Shape *shape, Vec point, double
 /* How deep the corners, or the circle, of a are in b. */
 static double corners_depth(const World *world, const Shape *a, Pose at_a, const Shape *b, Pose at_b) {
     double deepest = -INFINITY;
+    Vec centre = unplace(at_a, place(at_b, b->centre));
     for (int32_t i = 0; i < a->count; i++) {
+        if (i % STRETCH == 0 && a->count > LONG_OUTLINE) { /* what is beyond b's disk is in nothing of it */
+            const Stretch *stretch = &world->stretch[a->first + i];
+            if (vlength(vsub(stretch->centre, centre)) > stretch->reach + b->reach) {
+                i += STRETCH - 1;
+                continue;
+            }
+        }
         Vec point = unplace(at_b, place(at_a, world->vertex[a->first + i]));
         double depth = b->count > 1 ? depth_in(world, b, point, a->radius)
                                     : a->radius + b->radius - vlength(vsub(point, world->vertex[b->first]));

@@ -232,10 +232,18 @@ static double arm_of(const World *world, const Shape *shape) {
     return shape->count == 1 ? vlength(world->vertex[shape->first]) : vlength(shape->centre) + shape->reach;
 }
 
+/* How far ahead the search looks at first: of a long outline, only at what the other shape can come near, as it is far more. */
+static double first_look(const Search *s, const Shape *a, const Shape *b, double from, double to) {
+    if (a->count <= LONG_OUTLINE && b->count <= LONG_OUTLINE) return to - from;
+    PairBound all = pair_bound(s->a.motion, arm_of(s->world, a), s->b.motion, arm_of(s->world, b), 0, from, to);
+    return fmin(to - from, fmin(a->reach, b->reach) / fmax(all.closing, 1e-300));
+}
+
 static double search_shapes(const Search *s, int32_t shape_a, int32_t shape_b, double from, double to) {
     const Shape *a = &s->world->shape[shape_a], *b = &s->world->shape[shape_b];
     if (stays_clear(s, a, b, from, to)) return INFINITY;
-    double t = from, horizon = from, ahead = to - from, ra = arm_of(s->world, a), rb = arm_of(s->world, b);
+    double t = from, horizon = from, ahead = first_look(s, a, b, from, to), ra = arm_of(s->world, a),
+           rb = arm_of(s->world, b);
     PairBound bound = {0};
     for (int32_t steps = 0; steps < MAX_STEPS; steps++) {
         *s->steps += 1;

@@ -126,6 +126,19 @@ static void measure_sides(Side *side, const Vec *v, int32_t count) {
     }
 }
 
+static void measure_stretches(Stretch *stretch, const Vec *v, int32_t count) {
+    for (int32_t i = 0; i < count; i += STRETCH) {
+        int32_t last = i + STRETCH < count ? i + STRETCH : count; /* the vertex that ends the last side */
+        Vec low = v[i], high = v[i];
+        for (int32_t j = i + 1; j <= last; j++) {
+            Vec at = v[j % count];
+            low = vec(fmin(low.x, at.x), fmin(low.y, at.y));
+            high = vec(fmax(high.x, at.x), fmax(high.y, at.y));
+        }
+        stretch[i] = (Stretch){vscale(vadd(low, high), 0.5), 0.5 * vlength(vsub(high, low))};
+    }
+}
+
 static void add_shape(World *world, const SimInput *input, int32_t source, int32_t carrier) {
     const SimBody *b = &input->bodies[source];
     Body *body = &world->body[carrier];
@@ -150,6 +163,7 @@ static void add_shape(World *world, const SimInput *input, int32_t source, int32
     }
     bound_shape(shape, out);
     measure_sides(&world->side[shape->first], out, shape->count);
+    measure_stretches(&world->stretch[shape->first], out, shape->count);
     world->vertex_count += shape->count;
     world->source_shape[source] = world->shape_count++;
     body->shape_count++;
@@ -256,13 +270,15 @@ int world_create(World *world, const SimInput *input) {
     world->shape = malloc((n + 1) * sizeof *world->shape);
     world->vertex = malloc((vertices + 1) * sizeof *world->vertex);
     world->side = malloc((vertices + 1) * sizeof *world->side);
+    world->stretch = malloc((vertices + 1) * sizeof *world->stretch);
     world->joint = malloc((joints + 1) * sizeof *world->joint);
     world->source_shape = malloc((n + 1) * sizeof *world->source_shape);
     int32_t *parent = malloc((n + 1) * sizeof *parent), *member = malloc((n + 1) * sizeof *member);
     int32_t *group_size = malloc((n + 1) * sizeof *group_size);
     Tie *ties = malloc((joints + 1) * sizeof *ties);
     int status = SIM_OUT_OF_MEMORY;
-    if (!world->body || !world->shape || !world->vertex || !world->side || !world->joint || !world->source_shape)
+    if (!world->body || !world->shape || !world->vertex || !world->side || !world->stretch || !world->joint ||
+        !world->source_shape)
         goto out;
     if (!parent || !member || !group_size || !ties) goto out;
     double size = 1e-9;
@@ -293,6 +309,7 @@ void world_destroy(World *world) {
     free(world->shape);
     free(world->vertex);
     free(world->side);
+    free(world->stretch);
     free(world->piece);
     free(world->piece_vertex);
     free(world->piece_corner);

@@ -39,6 +39,17 @@ typedef struct Side {
     bool reflex;   /* the outline turns inwards at the vertex: nothing convex can touch there */
 } Side;
 
+/* A disk that holds as many sides of an outline as follow its first vertex. */
+typedef struct Stretch {
+    Vec centre; /* in the body's frame */
+    double reach;
+} Stretch;
+
+enum {
+    STRETCH = 8,      /* sides */
+    LONG_OUTLINE = 16 /* vertices: an outline of more is looked at by stretches first */
+};
+
 typedef struct Shape {
     int32_t body;                     /* that carries it */
     int32_t source;                   /* index among the input's bodies */
@@ -71,6 +82,7 @@ typedef struct World {
     Shape *shape; /* grouped by body */
     Vec *vertex;
     Side *side;   /* of every vertex */
+    Stretch *stretch; /* of every STRETCHth vertex of a shape, by vertex */
     Piece *piece; /* made by world_decompose */
     Vec *piece_vertex;
     int32_t *piece_corner; /* by piece vertex: which one of World.vertex it is */
