@@ -7,11 +7,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from pages import box, kinds, ngon, read, turned
+from numpy.typing import NDArray
+from pages import box, kinds, ngon, page, read, turned
 
 from sim.scene import Circle, Polygon
-from sketch.synthetic import HANDS, arrow, circle, cross, ellipse, line, outline
+from sketch import recognize
+from sketch.synthetic import HANDS, Hand, arrow, circle, cross, ellipse, line, outline
 
+Array = NDArray[np.float64]
 HAND = [(name, seed) for name in ("neat", "quick", "pieces") for seed in range(3)]
 hands = pytest.mark.parametrize(("name", "seed"), HAND)
 
@@ -324,3 +327,48 @@ def test_a_scrawl_at_a_corner_is_no_gravity() -> None:
     small = arrow((585, 405), (600, 418), HANDS["neat"], rng)
     assert read(body, small).scene.gravity == (0.0, 0.0)
     assert read(body, arrow((100, 100), (104, 220), HANDS["neat"], rng)).scene.gravity != (0.0, 0.0)
+
+
+def _pairs(hand: Hand, rng: np.random.Generator) -> dict[str, tuple[list[list[Array]], list[str]]]:
+    """Hard pairs, each as what is drawn, and as what that is."""
+    rod, plank = line([(200, 300), (600, 320)], hand, rng), outline(box(400, 300, 420, 40), hand, rng)
+    long = ellipse((300, 300), (150, 80), 0.5, hand, rng)
+    board, post = outline(box(300, 150, 400, 80), hand, rng), outline(box(300, 300, 60, 380), hand, rng)
+    frame = outline(box(400, 300, 340, 120), hand, rng)
+    rods = [
+        *line([(100, 100), (420, 300)], hand, rng),
+        *line([(120, 310), (400, 90)], hand, rng),
+    ]
+    ring = circle((400, 300), 90, hand, rng)[0]
+    return {
+        "a line": ([rod], ["bar"]),
+        "a long thin rectangle": ([plank], ["4-gon"]),
+        "a circle": ([[ring]], ["circle"]),
+        "a circle with a gap": ([[ring[: round(0.9 * len(ring))]]], ["circle"]),
+        "an ellipse": ([long], ["24-gon"]),
+        "a hexagon": ([outline(ngon(6, 300, 300, 110), hand, rng)], ["6-gon"]),
+        "a parallelogram": ([outline([(0, 0), (220, 0), (310, 130), (90, 130)], hand, rng)], ["4-gon"]),
+        "an arrow": ([arrow((200, 150), (210, 310), hand, rng)], ["gravity"]),
+        "a pivot": ([board, post, circle((300, 150), 12, hand, rng)], ["4-gon", "4-gon", "pivot"]),
+        "a ball": ([board, circle((700, 400), 12, hand, rng)], ["4-gon", "circle"]),
+        "wheels over a frame": (
+            [frame, *(circle((x, 350), 48, hand, rng) for x in (300, 500))],
+            ["4-gon", "circle", "circle"],
+        ),
+        "an X": ([frame, cross((380, 300), 40, hand, rng)], ["4-gon", "anchor"]),
+        "crossing bars": ([rods], ["bar", "bar"]),
+        "a side drawn twice": ([frame, line([(250, 241), (550, 238)], hand, rng)], ["4-gon"]),
+    }
+
+
+@pytest.mark.parametrize("name", ["neat", "pieces"])
+@pytest.mark.parametrize("scale", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.0, 4.4])
+def test_hard_pairs_of_any_size_and_turned_by_any_angle(name: str, scale: float, angle: float) -> None:
+    way = scale * np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    pairs = _pairs(HANDS[name], np.random.default_rng([len(name), round(10 * angle)]))
+    for what, (drawn, meant) in pairs.items():
+        strokes = [s @ way for shape in drawn for s in shape]
+        low = np.concatenate(strokes).min(axis=0) - 20 * scale
+        found = recognize(page([s - low for s in strokes], width=1280 * scale, height=720 * scale))
+        assert kinds(found) == meant, what
