@@ -31,7 +31,9 @@ static bool is_nearest(const World *world, const Feature *f, const Gap *g, const
         int32_t other = k ? next : before, corner = k ? next : f->index_b;
         if (side[corner].reflex) continue;
         Vec outward = vec(side[other].along.y, -side[other].along.x);
-        bool less_deep = vdot(vsub(point, v[other]), outward) - f->radius_a > g->gap + slack->gap;
+        double gap = vdot(vsub(point, v[other]), outward) - f->radius_a;
+        if (gap > slack->gap) return false; /* in front of the other side of a tip: it has not come in */
+        bool less_deep = gap > g->gap + slack->gap;
         if (less_deep && leads_away(world, f, a, turn(b->at, outward), slack)) return false;
     }
     return true;

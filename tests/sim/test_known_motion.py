@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import hashlib
+import math
 
 import numpy as np
 import pytest
 
-from sim import Body, Circle, Joint, Rectangle, Scene, simulate
+from sim import Body, Circle, Joint, Polygon, Rectangle, Scene, simulate
 from sim.bench.cases import CASES, Case, case_error
 
 BY_NAME = {case.name: case for case in CASES}
@@ -156,3 +157,25 @@ def test_every_run_gives_the_same_bits() -> None:
         hashlib.sha256(simulate(machine(), duration=3.0).positions.tobytes()).hexdigest() for _ in range(3)
     }
     assert digests == {GOLDEN}
+
+
+def test_a_corner_beside_a_tip_is_not_in_it() -> None:
+    """A corner that falls past a needle is behind the line of the far flank, but outside; then the tip meets its side."""
+    needle = Polygon(
+        [(-1.0, -2 / 3), (0.5, -2 / 3), (0.5, 4 / 3)]
+    )  # the tip at the origin, the right flank upright
+    beside, height, left, right = (
+        0.003,
+        0.5,
+        math.radians(110),
+        math.radians(60),
+    )  # the corner's sides go up so
+    sides = [(0.0, 0.0), (math.cos(right), math.sin(right)), (math.cos(left), math.sin(left))]
+    x, y = (sum(v[k] for v in sides) / 3 for k in range(2))
+    spike = Polygon([(vx - x, vy - y) for vx, vy in sides])
+    falls = Body(id="spike", shape=spike, position=(beside + x, height + y))
+    ground = Body(id="needle", shape=needle, position=(-0.5, -4 / 3), anchored=True)
+    run = simulate(Scene(bodies=[ground, falls], gravity=(0, -9.81)), duration=0.5, tolerance=1e-8)
+    first = next(e for e in run.events if e.kind == "impact")
+    fall = height - beside * math.tan(left)
+    assert first.time == pytest.approx(math.sqrt(2 * fall / 9.81), abs=1e-8)
