@@ -160,7 +160,7 @@ def test_every_run_gives_the_same_bits() -> None:
 
 
 def test_a_corner_beside_a_tip_is_not_in_it() -> None:
-    """A corner that falls past a needle is behind the line of the far flank, but outside; then the tip meets its side."""
+    """A corner that falls past a needle is behind the line of the far flank, but outside; the tip meets its side."""
     needle = Polygon(
         [(-1.0, -2 / 3), (0.5, -2 / 3), (0.5, 4 / 3)]
     )  # the tip at the origin, the right flank upright
