@@ -52,11 +52,14 @@ def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
     for q in page.touching(*low, *high):
         if q is p or not page.apart(q.index, (p.index,)):
             continue
-        ink = _course(page, q, p.gap / FINE)
-        gaps = np.hypot(*(ink[:, None] - ends).transpose(2, 0, 1))
-        to, at = gaps.argmin(axis=0).tolist()  # from its last end, over the other's ink, to its first
+        ink = page.strokes.samples[q.index]
+        gaps = _distances(ink, ends)
+        if len(ink) * p.gap < FINE * q.length and gaps.min(axis=0).max() < reach + q.length / len(ink):
+            ink = _course(q, p.gap / FINE)
+            gaps = _distances(ink, ends)
         if gaps.min(axis=0).max() > reach + q.length / len(ink) / 2:
             continue
+        to, at = gaps.argmin(axis=0).tolist()  # from its last end, over the other's ink, to its first
         count, step = abs(at - to), 1 if at > to else -1
         if q.gap < ENDS_ON * q.length and 2 * count > len(ink):
             count, step = len(ink) - count, -step
@@ -64,10 +67,12 @@ def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
             yield q.index, ink[(to + step * np.arange(count + 1)) % len(ink)]
 
 
-def _course(page: Page, q: Piece, step: float) -> Array:
+def _distances(ink: Array, ends: Array) -> Array:
+    return np.asarray(np.hypot(*(ink[:, None] - ends).transpose(2, 0, 1)))
+
+
+def _course(q: Piece, step: float) -> Array:
     """A piece's ink in equal steps, of `step` at most unless it is very long [pixels], (n, 2)."""
-    if q.length <= step * len(page.strokes.samples[q.index]):
-        return np.asarray(page.strokes.samples[q.index])
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(q.points, axis=0).T))])
     t = np.linspace(0, along[-1], min(math.ceil(q.length / step), MOST_STEPS))
     return np.asarray(np.stack([np.interp(t, along, q.points[:, k]) for k in (0, 1)], axis=1))
