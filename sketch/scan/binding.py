@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from sketch.library import library
 
-__all__ = ["Chains", "crests", "distances", "pieces", "thin", "trace"]
+__all__ = ["Chains", "belt", "crests", "distances", "pieces", "thin", "trace"]
 
 _MASK = np.ctypeslib.ndpointer(np.uint8, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
 _FLOATS = np.ctypeslib.ndpointer(np.float32, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
+_DOUBLES = np.ctypeslib.ndpointer(np.float64, ndim=1, flags=("C_CONTIGUOUS", "WRITEABLE"))
+RAYS = 48  # as in core/belt.c
 _INTS = np.ctypeslib.ndpointer(np.int32, ndim=1, flags=("C_CONTIGUOUS", "WRITEABLE"))
 
 
@@ -26,6 +28,8 @@ def _library() -> ctypes.CDLL:
     int32, real = ctypes.c_int32, ctypes.c_float
     core.ink_crests.argtypes = [_MASK, _MASK, int32, int32, int32, int32, real, real, _MASK]
     core.ink_crests.restype = None
+    core.ink_belt.argtypes = [_MASK, int32, int32, _DOUBLES, ctypes.c_double, _DOUBLES]
+    core.ink_belt.restype = int32
     core.ink_distance.argtypes = [_MASK, int32, int32, _FLOATS]
     core.ink_distance.restype = None
     core.ink_thin.argtypes = [_MASK, int32, int32]
@@ -35,6 +39,22 @@ def _library() -> ctypes.CDLL:
     core.ink_pieces.argtypes = [_MASK, int32, int32, _INTS, _INTS]
     core.ink_pieces.restype = int32
     return core
+
+
+def belt(
+    mask: NDArray[np.uint8], seed: tuple[float, float, float], pen: float
+) -> tuple[float, NDArray[np.float64], float, NDArray[np.float64]] | None:
+    """The belt of ink around a small ring's middle: its roundness, middle, radius and closed way, or None.
+
+    mask: ink 1, paper 0, shape (h, w).  seed: about its middle and its radius [pixels].  pen: its width [pixels].
+    Roundness is 1 for a perfect circle and 0 for what is as much out of round as a careless square.
+    """
+    height, width = mask.shape
+    out = np.zeros(4 + 2 * RAYS)
+    if not _library().ink_belt(mask, width, height, np.array(seed, dtype=np.float64), pen, out):
+        return None
+    points = out[4:].reshape(-1, 2)
+    return float(out[0]), out[1:3], float(out[3]), np.concatenate([points, points[:1]])
 
 
 def crests(

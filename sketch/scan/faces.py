@@ -14,18 +14,19 @@ __all__ = ["standing"]
 
 MOST_SIDES = 24  # edges of a face that is looked at
 MOST_FACES = 80  # of a page: more are a net, or shading
+CUT = 5.0  # [rad²] of strain: where lines cross at two corners or more, what they enclose is no body
 SMALLEST = 4.0  # pen widths: a face whose area is no square of that is a gap between lines
 
 
 def standing(sheets: list[Sheet], stretches: Stretches) -> list[Way]:
     """The outlines of pieces of paper that have lines in common, each with all its ink, and without sides of others.
 
-    sheets: of one drawing, with its gaps and without.  stretches: of all its ink.
+    sheets: of one drawing, with its gaps, then without.  stretches: of all its ink.
     """
-    found: dict[tuple[bytes, frozenset[int]], Way] = {}
+    found: dict[frozenset[int], Way] = {}
     for sheet in sheets:
         for way in _standing(sheet, stretches):
-            found.setdefault((way.points.tobytes(), frozenset(way.ink)), way)
+            found.setdefault(frozenset(way.ink), way)
     return list(found.values())
 
 
@@ -38,7 +39,7 @@ def _standing(sheet: Sheet, stretches: Stretches) -> list[Way]:
     ]
     if len(found) > MOST_FACES:
         return []
-    outlines = [sheet.outline({f}) for f in found]
+    outlines = [outline for f in found if (outline := sheet.outline({f})).strain < CUT]
     near = [stretches.beside(outline.points) for outline in outlines]
     return [
         Way(outline.points, {name: stretches.ink[name] for name in sorted(near[k] - lent)}, outline.strain)

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.scan.binding import belt
 from sketch.scan.graph import Edge, Graph, Ink
 from sketch.scan.page import fill_holes, holes
 from sketch.scan.ways import Way
@@ -23,22 +24,15 @@ __all__ = ["find_rings", "take_rings"]
 
 Points = NDArray[np.float64]
 
-SMALLEST, LARGEST = 0.9, 4.5  # pen widths: the radius of the ring that the pen's middle went along
+SMALLEST, LARGEST = 0.9, 4.5  # pen widths: the radius that the pen's middle went along, as in core/belt.c
 CHINK = 1.0  # squares of the pen width: a smaller hole is one between lines that cross, for all one can tell
-RAYS = 48  # directions in which the belt is looked for
-DRAWN = 0.9  # the share of the rays that must meet the belt
-OUT_OF_ROUND = 0.09  # deviation from a circle, a share of its radius: a square has 0.11, a triangle 0.24
 CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to be chance
-OPEN = 0.25  # the share of the rays beyond the belt that must meet paper: a ring stands out from a scribble
-CLEAR = 0.8  # and with that within the belt
-BLOT = 0.6  # one that is filled must stand out by so much, and be as round
 ALL_ROUND = 0.7  # of its length: an edge that has so much of the ring is the ring
-LEAST_ROUND = -0.1
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
 
 def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[Way]:
-    """The closed ways of the pen around small round holes [pixels], each shape (RAYS + 1, 2), best first.
+    """The closed ways of the pen around small round holes [pixels], each shape (n, 2), best first.
 
     mask: ink 1, paper 0, shape (h, w).  distance: each ink pixel's distance to the paper.  Their ink is not known yet.
     """
@@ -48,7 +42,8 @@ def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[W
     if fill_holes(mask, CHINK * pen * pen):
         distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     found = sorted(
-        (ring for seed in _seeds(mask, distance, pen) for ring in _belt(mask, seed, pen)), key=lambda r: -r[0]
+        (ring for seed in _seeds(mask, distance, pen) if (ring := belt(mask, seed, pen)) is not None),
+        key=lambda r: -r[0],
     )
     rings: list[Way] = []
     for roundness, middle, radius, points in found:
@@ -90,77 +85,6 @@ def _grown(region: NDArray[Any], by: float) -> NDArray[Any]:
 
     side = 2 * max(round(by), 0) + 1
     return np.asarray(cv2.dilate(region, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))))
-
-
-def _belt(
-    mask: NDArray[Any], seed: tuple[float, float, float], pen: float
-) -> list[tuple[float, Points, float, Points]]:
-    """The belt of ink around a seed, as its roundness, middle, radius and points; empty where there is none.
-
-    Along each ray the belt is the run of ink whose middle is nearest to the circle so far, which is then
-    fitted to those middles (Kåsa 1976), three times.
-    """
-    angles = np.arange(RAYS) * (2 * np.pi / RAYS)
-    rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    middle, radius = np.array(seed[:2]), seed[2]
-    for _ in range(3):
-        met, along = _runs(mask, middle, rays, radius, pen)
-        if met.mean() < 0.6:
-            return []
-        points = middle + rays[met] * along[met, None]
-        middle, radius = _circle(points)
-        if not SMALLEST * pen <= radius <= LARGEST * pen:
-            return []
-    met, along = _runs(mask, middle, rays, radius, pen)
-    share = float(met.mean())
-    along = np.where(met, along, radius)
-    beyond = 1 - _at(mask, middle + rays * (along + 1.1 * pen)[:, None]).mean()
-    within = (
-        1 - _at(mask, middle + rays * np.maximum(np.where(met, along, radius) - 0.8 * pen, 0)[:, None]).mean()
-    )
-    uneven = float(np.sqrt(np.mean((along - radius) ** 2))) / radius
-    roundness = 1 - uneven / OUT_OF_ROUND
-    clear = within + beyond >= CLEAR or (beyond > BLOT and roundness > BLOT)
-    if share < DRAWN or beyond < OPEN or not clear or roundness < LEAST_ROUND:
-        return []
-    along = (np.roll(along, 1) + 2 * along + np.roll(along, -1)) / 4
-    points = middle + rays * along[:, None]
-    return [(roundness, middle, radius, np.concatenate([points, points[:1]]))]
-
-
-def _at(mask: NDArray[Any], points: Points) -> NDArray[Any]:
-    x = np.clip(np.round(points[..., 0]).astype(int), 0, mask.shape[1] - 1)
-    y = np.clip(np.round(points[..., 1]).astype(int), 0, mask.shape[0] - 1)
-    return np.asarray(mask[y, x])
-
-
-def _runs(
-    mask: NDArray[Any], middle: Points, rays: Points, radius: float, pen: float
-) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """Where each ray crosses ink nearest to `radius`: whether it does, and how far out the ink's middle is.
-
-    Where ink runs along the ray its middle says nothing, and the nearest of it that is a pen wide is taken.
-    """
-    reach = np.arange(max(radius - 1.2 * pen, 0), radius + 1.2 * pen, 0.5)
-    ink = _at(mask, middle + rays[:, None, :] * reach[None, :, None]).astype(float)
-    width = max(int(pen), 1)  # half-pixel steps over half a pen to either side
-    window = np.hanning(2 * width + 3)[1:-1]
-    window /= window.sum()
-    filled = np.lib.stride_tricks.sliding_window_view(
-        np.pad(ink, ((0, 0), (width, width))), len(window), axis=1
-    )
-    filled = filled @ window
-    value = filled - 0.15 * ((reach - radius) / pen) ** 2
-    best = value.argmax(axis=1)
-    met = filled[np.arange(len(rays)), best] > 0.6
-    return met, reach[best]
-
-
-def _circle(points: Points) -> tuple[Points, float]:
-    origin = points.mean(axis=0)
-    x, y = (points - origin).T
-    a, b, c = np.linalg.lstsq(np.stack([x, y, np.ones_like(x)], axis=1), x * x + y * y, rcond=None)[0]
-    return origin + np.array([a, b]) / 2, float(np.sqrt(max(c + (a * a + b * b) / 4, 0.0)))
 
 
 def take_rings(

@@ -160,11 +160,11 @@ def _strokes(seen: Traced) -> list[Points]:
             more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
             others += [_drawn(way, seen) for way in more]
     round_ways = [ring.points for ring in found]
-    sheets = [Sheet(edges, round_ways, pen) for edges in (bridged(drawn, pen), drawn.edges)]
+    sheets = [Sheet(edges, round_ways, pen) for edges in (drawn.edges, bridged(drawn, pen))]
     stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
     others += [_drawn(way, seen) for way in standing(sheets, stretches)]
     others += with_tails(likeliest + others, pen * seen.scale)
-    overlaps = [_drawn(way, seen) for way in overlapping(sheets[0], round_ways, stretches)]
+    overlaps = [_drawn(way, seen) for way in overlapping(sheets[1], round_ways, stretches)]
     others += [_drawn(way, seen) for way in crossed(drawn, first, distance, pen)]
     if others or overlaps:
         height, width = mask.shape

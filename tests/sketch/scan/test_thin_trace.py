@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sketch.scan.binding import crests, distances, pieces, thin, trace
+from sketch.scan.binding import belt, crests, distances, pieces, thin, trace
 from sketch.scan.corners import sharpen_corners
 from sketch.scan.graph import build_graph
 from sketch.scan.ways import trace_strokes
@@ -242,3 +242,24 @@ def test_a_thin_line_beside_a_dark_one_is_a_crest_and_the_dark_ones_edge_is_none
     assert np.all(inside[:, 28] == 1)
     assert not np.any(inside[:, :27])
     assert np.count_nonzero(line) == np.count_nonzero(inside)
+
+
+@pytest.mark.parametrize("radius", [6.0, 9.0, 14.0])
+def test_the_belt_of_a_ring_is_met_where_the_pen_went(radius: float) -> None:
+    mask = np.zeros((80, 80), np.uint8)
+    cv2.circle(mask, (41 * 16, 38 * 16), round(16 * radius), 1, PEN, shift=4)
+    found = belt(mask, (40.0, 40.0, radius + 1), PEN)
+    assert found is not None
+    roundness, middle, size, points = found
+    assert roundness > 0.5
+    assert np.hypot(*(middle - [41, 38])) < 0.6
+    assert abs(size - radius) < 0.6
+    assert np.abs(np.hypot(*(points - [41, 38]).T) - radius).max() < 1.2
+
+
+def test_there_is_no_belt_on_bare_paper_or_in_a_blot_or_around_a_triangle() -> None:
+    mask = np.zeros((80, 80), np.uint8)
+    assert belt(mask, (40.0, 40.0, 9.0), PEN) is None
+    cv2.polylines(mask, [np.array([(25, 54), (55, 54), (40, 27)], np.int32)], True, 1, PEN)
+    assert belt(mask, (40.0, 40.0, 12.0), PEN) is None
+    assert belt(np.ones((80, 80), np.uint8), (40.0, 40.0, 9.0), PEN) is None
