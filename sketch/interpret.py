@@ -27,11 +27,12 @@ JOINS = (
     0.3  # radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
 )
 NAILS = 0.12  # likewise of a pivot to the background: a ball in front of one body is common
+PIN = 0.02  # likewise over the longer side of the page: what is larger is no nail, however large what it lies on is
 WHEEL = 20.0  # times that a circle with a much smaller one at its centre is likelier a wheel than a pin
 NEAR = 2.5  # radii from a pivot's centre to a body that it misses by a slip of the hand
 AROUND = 5.0  # radii, likewise to one whose ink runs on beyond its outline, into the circle
 ON = 0.5  # radii from a small circle's centre to where two bodies meet: a ball that lies on both is a whole one off
-CUT = 0.75  # of a wheel's radius, from its centre to a body that it overlaps too much for one that it only touches
+CUT = 0.85  # of a wheel's radius, from its centre to a body that it overlaps too much for one that it only touches
 ROUGH = 20.0  # nats that a polygon leaves to be said about its ink: nineteen in twenty clean ones leave less
 UNSURE = 0.2  # a reading with a rival of this probability is named in the notes
 
@@ -55,7 +56,7 @@ def interpret(
         for k, r in enumerate((r for r in readings if r.solid), start=1)
     ]
     bodies = Bodies(drawn)
-    joints = _pivots(sketch, bodies, view.pixels_per_metre, notes)
+    joints = _pivots(sketch, bodies, view.pixels_per_metre, PIN * longer, notes)
     drawn = [d for d in drawn if d.reading.solid]
     _number(drawn, joints)
     for reading in readings:
@@ -110,8 +111,11 @@ def _number(drawn: list[Drawn], joints: list[Joint]) -> None:
 # ---------------------------------------------------------------- pivots
 
 
-def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, notes: list[str]) -> list[Joint]:
-    """Small circles over two bodies that overlap, or over one beside which they are small, become pivots."""
+def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[str]) -> list[Joint]:
+    """Small circles over two bodies that overlap, or over one beside which they are small, become pivots.
+
+    pin: radius that one to the background hardly exceeds [pixels].
+    """
     joints: list[Joint] = []
     places: list[tuple[Array, float, list[Drawn], Joint]] = []
     circles = [
@@ -126,6 +130,8 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, notes: list[str]) -> lis
             under, odds = under or [d for _, d in _near(circle, at, NEAR * radius, bodies)][:1], 1.0
         if not under:
             continue
+        if len(under) == 1 and not forced:
+            odds *= 1 / (1 + (radius / pin) ** 6)
         if not forced and _pinned(circle, at, radius, bodies):
             odds /= odds + (1 - odds) * WHEEL
         rival = ("ball", 1 - odds) if odds >= 0.5 else ("pivot", odds)

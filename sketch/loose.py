@@ -80,9 +80,10 @@ class LooseEnds:
         if len(known) == 0:
             return set()
         gaps = np.hypot(*(self.at[known, None] - self.at[ends]).transpose(2, 0, 1))
-        farthest = np.where(self._count[known] < CHOICES, np.inf, self._gap[known, -1])
-        near = gaps <= REACH * (self.length[known] + self.length[2 * piece])[:, None]
-        changed = known[(near & (gaps <= farthest[:, None])).any(axis=1)]
+        last = self._gap[known, -1] / (self.length[known] + self.length[self._near[known, -1]])
+        farthest = np.where(self._count[known] < CHOICES, REACH, np.minimum(last, REACH))
+        share = gaps.min(axis=1) / (self.length[known] + self.length[2 * piece])
+        changed = known[share <= 1.0001 * farthest]
         self._count[changed] = UNKNOWN
         return set(changed.tolist())
 

@@ -45,21 +45,25 @@ int ink_apart(const int32_t *rivals, const int32_t *from, int i, int j) {
 
 static int apart(const Search *s, int i, int j) { return ink_apart(s->rivals, s->from, i, j); }
 
-/* The nearest ends of other loose pieces that a chain may go on to from an end. */
+/* The ends of other loose pieces that a chain may go on to from an end: the nearest, as shares of the pieces' lengths, so that
+ * small marks beside an end do not hide where a long side goes on. */
 static void look_around(Search *s, int end) {
     int32_t *near = s->near + CHOICES * end;
     double *gap = s->gap + CHOICES * end, x = s->at[2 * end], y = s->at[2 * end + 1];
+    double share[CHOICES];
     int n = 0;
     for (int j = 0; j < s->rows && s->loose[end]; j++) {
         double dx = s->at[2 * j] - x, dy = s->at[2 * j + 1] - y, reach = REACH * (s->length[j] + s->length[end]);
         if (!s->loose[j] || fabs(dx) > reach || fabs(dy) > reach || j / 2 == end / 2) continue;
-        double d = hypot(dx, dy);
-        if (d > reach || (n == CHOICES && d >= gap[n - 1]) || !apart(s, end / 2, j / 2)) continue;
+        double d = hypot(dx, dy), of = d / reach;
+        if (d > reach || (n == CHOICES && of >= share[n - 1]) || !apart(s, end / 2, j / 2)) continue;
         int k = n < CHOICES ? n++ : CHOICES - 1;
-        for (; k > 0 && gap[k - 1] > d; k--) {
+        for (; k > 0 && share[k - 1] > of; k--) {
+            share[k] = share[k - 1];
             gap[k] = gap[k - 1];
             near[k] = near[k - 1];
         }
+        share[k] = of;
         gap[k] = d;
         near[k] = j;
     }
