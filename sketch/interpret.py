@@ -145,8 +145,12 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
         circle.reading.kind = "pivot"
         circle.reading.score *= odds
         place = (float(at[0]) / ppm, -float(at[1]) / ppm)
-        # rings that overlap are one pivot; the smaller, which comes later, says better where it is
-        again = [j for other, r, same, j in places if same == under and math.dist(other, at) < r + radius]
+        # rings that overlap are one pivot, and a ring in another; the smaller, which comes later, says better where it is
+        again = [
+            j
+            for other, r, same, j in places
+            if math.dist(other, at) < (r + radius if same == under else r - ON * radius)
+        ]
         for joint in again:
             joint.position = place
         if again:
