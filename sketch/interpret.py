@@ -145,7 +145,7 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
         circle.reading.kind = "pivot"
         circle.reading.score *= odds
         place = (float(at[0]) / ppm, -float(at[1]) / ppm)
-        # rings that overlap are one pivot, and a ring in another; the smaller, which comes later, says better where it is
+        # rings that overlap are one pivot, and a ring in another; the smaller, which comes later, says better where
         again = [
             j
             for other, r, same, j in places

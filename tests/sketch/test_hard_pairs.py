@@ -372,3 +372,33 @@ def test_hard_pairs_of_any_size_and_turned_by_any_angle(name: str, scale: float,
         low = np.concatenate(strokes).min(axis=0) - 20 * scale
         found = recognize(page([s - low for s in strokes], width=1280 * scale, height=720 * scale))
         assert kinds(found) == meant, what
+
+
+@hands
+def test_balls_in_a_frame_are_not_nailed_to_it(hand, rng) -> None:
+    frame = outline(box(640, 380, 950, 560), hand, rng)
+    balls = [circle((400 + 160 * k, 300 + 60 * (k % 2)), 46, hand, rng) for k in range(4)]
+    scene = read(frame, *balls).scene
+    assert [type(b.shape) for b in scene.bodies[1:]] == [Circle] * 4
+    assert scene.joints == []
+
+
+def test_a_ring_within_a_pivot_is_that_pivot() -> None:
+    hand, rng = HANDS["neat"], np.random.default_rng(4)
+    rod, load = outline(box(400, 300, 500, 120), hand, rng), outline(box(850, 300, 600, 120), hand, rng)
+    rings = [circle((640, 300), 36, hand, rng), circle((671, 300), 7, hand, rng)]  # the second beside the rod
+    scene = read(rod, load, *rings).scene
+    assert (len(scene.bodies), len(scene.joints)) == (2, 1)
+
+
+def test_small_marks_at_an_end_do_not_hide_where_a_side_goes_on() -> None:
+    """The sides of a beam overlap by an X's width, and the X's four ends are nearer than the side's."""
+    hand, rng = HANDS["neat"], np.random.default_rng(2)
+    below = [(940.0, 95.0), (940.0, 145.0), (340.0, 145.0), (340.0, 95.0), (498.0, 95.0)]
+    beam = line([(940.0, 93.0), (430.0, 95.0)], hand, rng) + line(below, hand, rng)
+    sides = [[(465.0, 105.0), (465.0, 395.0)], [(465.0, 395.0), (495.0, 395.0)]]
+    sides += [[(495.0, 395.0), (495.0, 105.0)], [(495.0, 105.0), (465.0, 105.0)]]
+    rod = [s for side in sides for s in line(side, hand, rng)]
+    scene = read(beam, cross((392, 120), 26, hand, rng), rod, circle((480, 122), 8, hand, rng)).scene
+    assert [b.anchored for b in scene.bodies] == [True, False]
+    assert len(scene.joints) == 1
