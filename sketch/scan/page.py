@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import crests, pieces
 from sketch.scan.ruling import FEWEST, drop_ruling
+from sketch.scan.table import TABLE, closed, darkest_channel, find_sheet
 
 __all__ = [
     "Page",
@@ -25,18 +26,8 @@ __all__ = [
 Image = NDArray[Any]  # uint8
 
 LIGHT_PIXELS = 120_000  # light is looked at on a picture reduced to this many
-FEWER = 3  # of these a side one is enough for a mean or a median
-COARSER = 5  # of these a side make one where light is smoothed
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line
 FINGER_MARK = 0.08  # likewise, the largest shadow or nail that is seen of a finger on the sheet
-FINGER = 0.015  # likewise, for telling the paper from what lies on it
-TABLE = 0.5  # what is not as bright as this share of the paper is not paper
-TINGE = 0.75  # likewise, of the paper's whiteness: what is more coloured is not paper in a shadow
-EDGES = 9  # [pixels] of the reduced picture: edges of shadows are narrower
-INKED = 99.5  # percent of a sheet that is certainly not ink
-HALF = 0.5  # of the ink's contrast: what has more is a line,
-LINE = 0.2  # of the light: which takes as much away at least
-ACROSS = 3  # [pixels] of the reduced picture: a line that runs so far to either side of an edge crosses it
 DARK_BOARD = 110  # of 255
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
@@ -85,16 +76,16 @@ def read_page(picture: Image) -> Page:
     """
     import cv2
 
-    grey = _darkest_channel(picture)
+    grey = darkest_channel(picture)
     height, width = grey.shape
     reduced = max(round((width * height / LIGHT_PIXELS) ** 0.5), 1)
     colours = _reduced(picture, reduced)
-    if _is_blackboard(_darkest_channel(colours)):
-        grey = _darkest_channel(255 - picture)
+    if _is_blackboard(darkest_channel(colours)):
+        grey = darkest_channel(255 - picture)
         colours = 255 - colours
-    small = _darkest_channel(colours)
-    light, edge = _closed(small, WIDEST_LINE), None
-    paper, around = _paper(colours)
+    small = darkest_channel(colours)
+    light, edge = closed(small, WIDEST_LINE), None
+    paper, around = find_sheet(colours)
     if paper is not None:
         # on the sheet, what is dark all over is filled: it has the light of the paper around it
         light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
@@ -166,14 +157,6 @@ def _less_stains(light: Image, small: Image, reduced: int) -> Image:
     return np.asarray(cv2.subtract(light, stain))
 
 
-def _darkest_channel(picture: Image) -> Image:
-    """A pen of any colour is dark in one channel at least."""
-    import cv2
-
-    blue, green, red = cv2.split(picture)
-    return np.asarray(cv2.min(cv2.min(blue, green), red))
-
-
 def _is_blackboard(small: Image) -> bool:
     """Whether most of the picture is dark, and what is narrow on it is bright."""
     import cv2
@@ -184,114 +167,6 @@ def _is_blackboard(small: Image) -> bool:
     bright = cv2.morphologyEx(small, cv2.MORPH_TOPHAT, kernel)
     dark = cv2.morphologyEx(small, cv2.MORPH_BLACKHAT, kernel)
     return bool(np.percentile(bright, 99.5) > 1.5 * np.percentile(dark, 99.5))
-
-
-def _closed(small: Image, width: float) -> Image:
-    """Without what is dark and narrower than `width`, a share of the picture's size, to either side.
-
-    A strip at the picture's edge goes on outside for all one knows: it is no line.
-    """
-    import cv2
-
-    reach = max(int(width * (small.shape[0] * small.shape[1]) ** 0.5), 2)
-    wide = cv2.copyMakeBorder(small, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
-    closed = cv2.morphologyEx(wide, cv2.MORPH_CLOSE, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
-    return np.asarray(closed[reach:-reach, reach:-reach])
-
-
-def _paper(colours: Image) -> tuple[Image | None, NDArray[Any]]:
-    """255 on the sheet and 0 off it, or None where the sheet fills the picture; and the light on the sheet.
-
-    Light changes across a sheet, but not at once: a sheet ends where brightness falls below TABLE within
-    a few pixels, or whiteness below TINGE.  Of the regions that such edges part, the one with the most light
-    is the sheet; the light on it, continued beyond, then tells softer edges too, and its whiteness tells skin
-    and wood from shadows.
-    """
-    import cv2
-
-    bright = _closed(_darkest_channel(colours), FINGER)
-    pale = 255 - _darkest_channel(255 - colours)
-    whiteness = bright / np.maximum(_closed(pale, FINGER), 1).astype(np.float32)
-    square = np.ones((5, 5), np.uint8)
-    lit = cv2.erode(bright, square) >= TABLE * cv2.dilate(bright, square)
-    white = cv2.erode(whiteness, square) >= TINGE * cv2.dilate(whiteness, square)
-    inner = (lit & white).astype(np.uint8)
-    if inner.all():
-        return None, bright
-    weight = _brightest_region(inner, bright).astype(np.float32)
-    around = _continued(bright, weight)
-    for shade in _shadows(inner, weight > 0, bright, _darkest_channel(colours), whiteness):
-        near = cv2.dilate(shade, np.ones((EDGES, EDGES), np.uint8)) > 0
-        around = np.where(near, np.minimum(around, _continued(bright, shade.astype(np.float32))), around)
-        inner[near & (cv2.dilate(weight, np.ones((EDGES, EDGES), np.uint8)) > 0)] = 1
-    lit = bright >= TABLE * around
-    white = whiteness >= TINGE * np.median(whiteness[::FEWER, ::FEWER][weight[::FEWER, ::FEWER] > 0])
-    sheet = _brightest_region(inner & lit & white, bright)
-    # what the sheet surrounds lies on it: a filled shape, a coin, a blot
-    beyond = np.pad(_outside(sheet).astype(np.uint8), 1, constant_values=1)
-    return np.asarray(255 * (1 - cv2.dilate(beyond, square)[1:-1, 1:-1]), np.uint8), around
-
-
-def _outside(sheet: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """What is off the sheet, without what it surrounds."""
-    import cv2
-
-    rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)
-    _, labels = cv2.connectedComponents(rest, connectivity=4)
-    return np.asarray((labels == labels[0, 0])[1:-1, 1:-1])
-
-
-def _shadows(
-    inner: Image, sheet: NDArray[np.bool_], bright: Image, small: Image, whiteness: NDArray[Any]
-) -> list[Image]:
-    """The regions beside the sheet that are paper in a deep shadow: as white as it, and lines run into them.
-
-    Nobody draws from the sheet on to the table.
-    """
-    import cv2
-
-    contrast = 1 - small / np.maximum(bright, 1).astype(np.float32)
-    dark = contrast > max(HALF * np.percentile(contrast[sheet], INKED), LINE)
-    _, lines = cv2.connectedComponents(dark.astype(np.uint8), connectivity=8)
-    on_sheet = np.bincount(lines[sheet & dark], minlength=int(lines.max()) + 1) >= ACROSS
-    count, regions, stats, _ = cv2.connectedComponentsWithStats(inner, connectivity=4)
-    white = TINGE * np.median(whiteness[sheet])
-    off = _outside(sheet)  # what the sheet surrounds is filled, and no shadow
-    found = []
-    for k in range(1, count):
-        if stats[k, cv2.CC_STAT_AREA] < NOTABLE * inner.size:
-            continue
-        region = regions == k
-        if not off[region].any() or np.median(whiteness[region]) < white:
-            continue
-        there = np.bincount(lines[region & dark], minlength=len(on_sheet)) >= ACROSS
-        if np.any(on_sheet[1:] & there[1:]):
-            found.append(region.astype(np.uint8))
-    return found
-
-
-def _continued(values: NDArray[Any], weight: NDArray[np.float32]) -> NDArray[Any]:
-    """The values where there is weight, smoothed and continued beyond."""
-    import cv2
-
-    height, width = values.shape
-    size = (max(width // COARSER, 1), max(height // COARSER, 1))
-    total, known = (cv2.resize(v, size, interpolation=cv2.INTER_AREA) for v in (weight * values, weight))
-    spread = 0.12 * (size[0] * size[1]) ** 0.5
-    everywhere = float(total.sum()) / max(float(known.sum()), 1e-9)  # it is this far from all that has weight
-    total, known = cv2.GaussianBlur(total, (0, 0), spread), cv2.GaussianBlur(known, (0, 0), spread)
-    smooth = (total + 1e-3 * everywhere) / (known + 1e-3)
-    return np.asarray(cv2.resize(smooth, (width, height), interpolation=cv2.INTER_LINEAR))
-
-
-def _brightest_region(mask: Image, bright: Image) -> NDArray[np.bool_]:
-    """The connected region of a mask that has the most light in all."""
-    import cv2
-
-    count, labels = cv2.connectedComponents(mask, connectivity=4)
-    light = np.bincount(labels[::FEWER, ::FEWER].ravel(), bright[::FEWER, ::FEWER].ravel(), minlength=count)
-    light[0] = -1
-    return np.asarray(labels == int(np.argmax(light)))
 
 
 def _noise(darkness: Image, paper: Image | None, step: int) -> float:

@@ -136,6 +136,60 @@ def test_kinds_of_pixels(kind: str) -> None:
     assert_all(read_picture(encoded(picture)))
 
 
+def on_planks(sheet: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
+    """A sheet on a desk whose seams end at it."""
+    desk = np.full((HEIGHT + 240, WIDTH + 240, 3), color, float)
+    desk += np.random.default_rng(3).normal(0, 3, desk.shape)
+    for y in range(35, len(desk), 130):
+        cv2.line(desk, (0, y), (desk.shape[1], y + 6), (20, 25, 30), 3, cv2.LINE_AA)
+    desk = np.clip(desk, 0, 255).astype(np.uint8)
+    desk[120:-120, 120:-120] = sheet
+    return desk
+
+
+def assert_all_at(picture: np.ndarray, left: int, top: int) -> None:
+    sketch = read_picture(encoded(picture))
+    for stroke in sketch.strokes:
+        stroke.points[:] -= (left, top)
+    assert_all(sketch)
+
+
+@pytest.mark.parametrize(
+    ("paper", "desk"),
+    [((235, 238, 240), (70, 75, 80)), ((235, 238, 240), (185, 190, 195)), ((120, 235, 250), (150, 150, 150))],
+    ids=["dark desk", "pale desk", "yellow note"],
+)
+def test_a_sheet_on_a_desk_is_all_that_is_read(
+    paper: tuple[int, int, int], desk: tuple[int, int, int]
+) -> None:
+    """A desk may be as white as the paper, and its seams as dark as ink."""
+    assert_all_at(on_planks(drawn(ink(), paper=paper, noise=3), desk), 120, 120)
+
+
+def test_a_deep_shadow_on_a_sheet_that_is_seen_whole_is_paper() -> None:
+    """No line leads into it, so that only the sheet's edges tell."""
+    light = np.where(ACROSS + 0.1 * DOWN < 0.93, 1.0, 0.35)
+    sheet = lit(drawn(ink(), noise=3), light)
+    cv2.line(sheet, (690, 100), (690, 400), (10, 10, 10), 4, cv2.LINE_AA)
+    sketch = read_picture(encoded(on_planks(sheet, (50, 75, 105))))
+    ends = [s.points[[0, -1], 0] for s in sketch.strokes]
+    assert len(sketch.strokes) == 5
+    assert sum(abs(x - 810).max() < 4 for x in ends) == 1
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_tools_of_an_app_are_not_drawn(dark: bool) -> None:
+    canvas = drawn(ink(), paper=(255, 255, 255), pen=(0, 0, 0))
+    bar = np.full((90, WIDTH, 3), 238, np.uint8)
+    for x in range(40, 400, 70):
+        cv2.rectangle(bar, (x, 30), (x + 36, 66), (60, 60, 60), 3, cv2.LINE_AA)
+        cv2.circle(bar, (WIDTH - x, 48), 16, (40, 40, 220), cv2.FILLED, cv2.LINE_AA)
+    picture = np.vstack([bar, canvas])
+    if dark:
+        picture = (255 - 0.88 * picture).astype(np.uint8)
+    assert_all_at(picture, 0, 90)
+
+
 def error_diffused(grey: np.ndarray) -> np.ndarray:
     """Floyd and Steinberg's dots: what a pixel is off is shared out to the next ones."""
     left = np.pad(grey.astype(float), ((0, 1), (1, 1)))

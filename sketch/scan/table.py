@@ -1,0 +1,296 @@
+"""Where the sheet of paper is on a picture, and the table, fingers and other sheets are not.
+
+All of it on a picture that is reduced to some hundred thousand pixels.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["TABLE", "closed", "darkest_channel", "find_sheet"]
+
+Image = NDArray[Any]  # uint8
+
+TABLE = 0.5  # what is not as bright as this share of the paper is not paper
+FEWER = 3  # of these a side one is enough for a mean or a median
+COARSER = 5  # of these a side make one where light is smoothed
+FINGER = 0.015  # of the picture's size, to either side: what lies on the paper and is no wider is left out
+TINGE = 0.75  # of the paper's whiteness: what is more coloured is not paper in a shadow
+EDGES = 9  # [pixels]: edges of shadows are narrower
+INKED = 99.5  # percent of a sheet that is certainly not ink
+HALF = 0.5  # of the ink's contrast: what has more is a line,
+LINE = 0.2  # of the light: which takes as much away at least
+ACROSS = 3  # [pixels]: a line that runs so far to either side of an edge crosses it
+NOTABLE = 0.03  # of the picture: smaller regions are no part of the sheet that matters
+STEP = 0.04  # of the light that changes at least at the edge of a sheet,
+ROUGH = 4.0  # times what changes everywhere
+LEAST_SHEET = 0.1  # of the picture, that holds what is to be seen
+BULKY = 0.85  # of its convex hull that a sheet covers, though fingers hold it
+FOUR_SIDED = 0.95  # of its convex hull, and of the quadrilateral around it, that a sheet covers
+SIDES = 3  # of a sheet that are seen, to tell it from a part of a sheet in a shadow
+BEYOND = 4  # [pixels] from its edge that a table's light is taken
+REGIONS = 6  # that are looked at, the largest,
+PARTS = 4  # so many of them at once
+
+
+def find_sheet(colours: Image) -> tuple[Image | None, NDArray[Any]]:
+    """255 on the sheet and 0 off it, or None where the sheet fills the picture; and the light on the sheet.
+
+    Light changes across a sheet, but not at once: a sheet ends where brightness falls below TABLE within
+    a few pixels, or whiteness below TINGE.  Of the regions that such edges part, the one with the most light
+    is the sheet; the light on it, continued beyond, then tells softer edges too, and its whiteness tells skin
+    and wood from shadows.
+    """
+    import cv2
+
+    bright = closed(darkest_channel(colours), FINGER)
+    pale = 255 - darkest_channel(255 - colours)
+    whiteness = bright / np.maximum(closed(pale, FINGER), 1).astype(np.float32)
+    framed = _framed(colours)
+    if framed is not None:
+        sheet, *parts = framed
+        white = whiteness >= TINGE * np.median(whiteness[sheet])
+        around = _continued(bright, sheet.astype(np.float32))
+        for part in parts:
+            around = _shaded(around, bright, part.astype(np.uint8))
+        return _whole(sheet & white), around
+    square = np.ones((5, 5), np.uint8)
+    lit = cv2.erode(bright, square) >= TABLE * cv2.dilate(bright, square)
+    white = cv2.erode(whiteness, square) >= TINGE * cv2.dilate(whiteness, square)
+    inner = (lit & white).astype(np.uint8)
+    if inner.all():
+        return None, bright
+    weight = _brightest_region(inner, bright).astype(np.float32)
+    around = _continued(bright, weight)
+    for shade in _shadows(inner, weight > 0, bright, darkest_channel(colours), whiteness):
+        around = _shaded(around, bright, shade)
+        near = cv2.dilate(shade, np.ones((EDGES, EDGES), np.uint8)) > 0
+        inner[near & (cv2.dilate(weight, np.ones((EDGES, EDGES), np.uint8)) > 0)] = 1
+    lit = bright >= TABLE * around
+    white = whiteness >= TINGE * np.median(whiteness[::FEWER, ::FEWER][weight[::FEWER, ::FEWER] > 0])
+    return _whole(_brightest_region(inner & lit & white, bright)), around
+
+
+def _whole(sheet: NDArray[np.bool_]) -> Image:
+    """255 on the sheet and what it surrounds, which lies on it: a filled shape, a coin, a blot."""
+    import cv2
+
+    beyond = np.pad(_outside(sheet).astype(np.uint8), 1, constant_values=1)
+    return np.asarray(255 * (1 - cv2.dilate(beyond, np.ones((5, 5), np.uint8))[1:-1, 1:-1]), np.uint8)
+
+
+def _shaded(around: NDArray[Any], bright: Image, shade: Image) -> NDArray[Any]:
+    """The light around, but in a shadow and near it no more than the shadow's own."""
+    import cv2
+
+    near = cv2.dilate(shade, np.ones((EDGES, EDGES), np.uint8)) > 0
+    return np.asarray(
+        np.where(near, np.minimum(around, _continued(bright, shade.astype(np.float32))), around)
+    )
+
+
+def _framed(colours: Image) -> list[NDArray[np.bool_]] | None:
+    """A sheet that lies whole on something else as bright: four-sided, brighter than around it, crossed by no ink.
+
+    Its edges may be faint.  On what no camera saw, whose colours are flat, one edge is enough: that of an app's tools.
+    Where edges part the sheet itself, as those of shadows do, the whole is four-sided, too, and is given before its
+    parts.
+    """
+    import cv2
+
+    height, width = colours.shape[:2]
+    if min(height, width) < 8 * EDGES:
+        return None
+    half = cv2.resize(colours, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
+    light = closed(cv2.cvtColor(half, cv2.COLOR_BGR2GRAY), FINGER)
+    square = np.ones((5, 5), np.uint8)
+    step = 1 - cv2.erode(light, square) / np.maximum(cv2.dilate(light, square), 1).astype(np.float32)
+    rough = float(np.median(step[::FEWER, ::FEWER]))
+    edges = step > max(STEP, ROUGH * rough)
+    sides = SIDES if rough else 1
+    count, labels, stats, _ = cv2.connectedComponentsWithStats((~edges).astype(np.uint8), connectivity=4)
+    area = stats[1:, cv2.CC_STAT_AREA]
+    if count < 3 or area.max() > (1 - LEAST_SHEET / 2) * light.size:
+        return None
+    large = [k + 1 for k in np.argsort(-area)[:REGIONS].tolist() if area[k] > NOTABLE * light.size]
+    several = [some for n in range(1, PARTS + 1) for some in combinations(large, n)]
+    for some in sorted(several, key=lambda some: -sum(area[k - 1] for k in some)):
+        way = _around(labels, some)
+        if cv2.contourArea(way) < LEAST_SHEET * light.size or not _is_bulky(way, light.shape, sides):
+            continue
+        sheet = cv2.drawContours(np.zeros_like(light), [way], -1, 1, cv2.FILLED)
+        if not _stands_out(sheet, light):
+            continue
+        if not _is_four_sided(way):
+            return None  # it is more than a sheet, or fingers hold it: then a part of it proves nothing
+        whole = cv2.resize(sheet, (width, height), interpolation=cv2.INTER_NEAREST)
+        if _is_crossed(whole, colours):
+            return None
+        # what the rest of the sheet surrounds is filled, and no shadow
+        least = (1 - NOTABLE) * cv2.contourArea(way)
+        others = [tuple(other for other in some if other != k) for k in some]
+        shades = [
+            k
+            for k, rest in zip(some, others, strict=True)
+            if rest and cv2.contourArea(_around(labels, rest)) < least
+        ]
+        parts = [
+            cv2.resize((labels == k).astype(np.uint8), (width, height), interpolation=cv2.INTER_NEAREST)
+            for k in shades
+        ]
+        return [part > 0 for part in (whole, *parts)]
+    return None
+
+
+def _around(labels: NDArray[Any], regions: tuple[int, ...]) -> NDArray[Any]:
+    """The outline of several regions, across the edges that part them."""
+    import cv2
+
+    square = np.ones((5, 5), np.uint8)
+    region = cv2.dilate(np.isin(labels, regions).astype(np.uint8), square)
+    if len(regions) > 1:
+        region = cv2.morphologyEx(region, cv2.MORPH_CLOSE, square)
+    return max(cv2.findContours(region, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)[0], key=cv2.contourArea)
+
+
+def _is_bulky(way: NDArray[Any], shape: tuple[int, ...], sides: int) -> bool:
+    """Whether an outline is nearly convex, and so many of its sides may be within the picture."""
+    import cv2
+
+    x, y, wide, high = cv2.boundingRect(way)
+    beyond = (x, y, shape[1] - x - wide, shape[0] - y - high)
+    inside = sum(margin > BEYOND for margin in beyond)
+    return inside >= sides and cv2.contourArea(way) > BULKY * cv2.contourArea(cv2.convexHull(way))
+
+
+def _is_four_sided(way: NDArray[Any]) -> bool:
+    """Whether an outline is about a convex quadrilateral."""
+    import cv2
+
+    hull = cv2.convexHull(way)
+    area = cv2.contourArea(hull)
+    corners = cv2.approxPolyDP(hull, 0.02 * cv2.arcLength(hull, True), True)
+    return (
+        cv2.contourArea(way) > FOUR_SIDED * area
+        and len(corners) == 4
+        and abs(cv2.contourArea(corners) - area) < (1 - FOUR_SIDED) * area
+    )
+
+
+def _stands_out(sheet: Image, light: Image) -> bool:
+    """Whether a sheet is brighter than what is around it, nearly everywhere."""
+    import cv2
+
+    inner = cv2.erode(light, np.ones((3, 3), np.uint8))
+    near, far = (np.ones((2 * reach + 1,) * 2, np.uint8) for reach in (BEYOND, BEYOND + 1))
+    rim = cv2.dilate(sheet, far) > cv2.dilate(sheet, near)
+    # the brightest within reach is the sheet's light
+    within = cv2.dilate(inner * sheet, np.ones((4 * BEYOND + 1,) * 2, np.uint8))
+    darker = light[rim] < (1 - STEP / 2) * within[rim]
+    return bool(darker.size and darker.mean() > 0.9)
+
+
+def _is_crossed(sheet: Image, colours: Image) -> bool:
+    """Whether lines lead from a sheet to what is around it: nobody draws on to the table."""
+    import cv2
+
+    small = darkest_channel(colours)
+    dark = _inked(small, closed(small, FINGER), sheet > 0)
+    _, lines = cv2.connectedComponents(dark.astype(np.uint8), connectivity=8)
+    reach = np.ones((2 * BEYOND + 1,) * 2, np.uint8)
+    inside, outside = cv2.erode(sheet, reach) > 0, cv2.dilate(sheet, reach) == 0
+    total = int(lines.max()) + 1
+    both = [np.bincount(lines[part & dark], minlength=total) >= ACROSS for part in (inside, outside)]
+    return bool((both[0] & both[1])[1:].any())
+
+
+def _outside(sheet: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """What is off the sheet, without what it surrounds."""
+    import cv2
+
+    rest = np.pad((~sheet).astype(np.uint8), 1, constant_values=1)
+    _, labels = cv2.connectedComponents(rest, connectivity=4)
+    return np.asarray((labels == labels[0, 0])[1:-1, 1:-1])
+
+
+def _shadows(
+    inner: Image, sheet: NDArray[np.bool_], bright: Image, small: Image, whiteness: NDArray[Any]
+) -> list[Image]:
+    """The regions beside the sheet that are paper in a deep shadow: as white as it, and lines run into them.
+
+    Nobody draws from the sheet on to the table.
+    """
+    import cv2
+
+    dark = _inked(small, bright, sheet)
+    _, lines = cv2.connectedComponents(dark.astype(np.uint8), connectivity=8)
+    on_sheet = np.bincount(lines[sheet & dark], minlength=int(lines.max()) + 1) >= ACROSS
+    count, regions, stats, _ = cv2.connectedComponentsWithStats(inner, connectivity=4)
+    white = TINGE * np.median(whiteness[sheet])
+    off = _outside(sheet)  # what the sheet surrounds is filled, and no shadow
+    found = []
+    for k in range(1, count):
+        if stats[k, cv2.CC_STAT_AREA] < NOTABLE * inner.size:
+            continue
+        region = regions == k
+        if not off[region].any() or np.median(whiteness[region]) < white:
+            continue
+        there = np.bincount(lines[region & dark], minlength=len(on_sheet)) >= ACROSS
+        if np.any(on_sheet[1:] & there[1:]):
+            found.append(region.astype(np.uint8))
+    return found
+
+
+def _inked(small: Image, bright: Image, sheet: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """What is as dark as the lines on a sheet are at least."""
+    contrast = 1 - small / np.maximum(bright, 1).astype(np.float32)
+    return np.asarray(contrast > max(HALF * np.percentile(contrast[sheet], INKED), LINE))
+
+
+def _continued(values: NDArray[Any], weight: NDArray[np.float32]) -> NDArray[Any]:
+    """The values where there is weight, smoothed and continued beyond."""
+    import cv2
+
+    height, width = values.shape
+    size = (max(width // COARSER, 1), max(height // COARSER, 1))
+    total, known = (cv2.resize(v, size, interpolation=cv2.INTER_AREA) for v in (weight * values, weight))
+    spread = 0.12 * (size[0] * size[1]) ** 0.5
+    everywhere = float(total.sum()) / max(float(known.sum()), 1e-9)  # it is this far from all that has weight
+    total, known = cv2.GaussianBlur(total, (0, 0), spread), cv2.GaussianBlur(known, (0, 0), spread)
+    smooth = (total + 1e-3 * everywhere) / (known + 1e-3)
+    return np.asarray(cv2.resize(smooth, (width, height), interpolation=cv2.INTER_LINEAR))
+
+
+def _brightest_region(mask: Image, bright: Image) -> NDArray[np.bool_]:
+    """The connected region of a mask that has the most light in all."""
+    import cv2
+
+    count, labels = cv2.connectedComponents(mask, connectivity=4)
+    light = np.bincount(labels[::FEWER, ::FEWER].ravel(), bright[::FEWER, ::FEWER].ravel(), minlength=count)
+    light[0] = -1
+    return np.asarray(labels == int(np.argmax(light)))
+
+
+def closed(small: Image, width: float) -> Image:
+    """Without what is dark and narrower than `width`, a share of the picture's size, to either side.
+
+    A strip at the picture's edge goes on outside for all one knows: it is no line.
+    """
+    import cv2
+
+    reach = max(int(width * (small.shape[0] * small.shape[1]) ** 0.5), 2)
+    wide = cv2.copyMakeBorder(small, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
+    closed = cv2.morphologyEx(wide, cv2.MORPH_CLOSE, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
+    return np.asarray(closed[reach:-reach, reach:-reach])
+
+
+def darkest_channel(picture: Image) -> Image:
+    """A pen of any colour is dark in one channel at least."""
+    import cv2
+
+    blue, green, red = cv2.split(picture)
+    return np.asarray(cv2.min(cv2.min(blue, green), red))
