@@ -114,7 +114,7 @@ def plot(results: dict[str, tuple[list[Point], list[Point]]], path: str) -> None
     import matplotlib.pyplot as plt
 
     shown = {name: r for name, r in results.items() if not math.isnan(r[0][0].error)}
-    columns = min(range(5, 9), key=lambda c: (-len(shown)) % c) if len(shown) > 8 else len(shown)
+    columns = min(range(6, 9), key=lambda c: (-len(shown)) % c) if len(shown) > 8 else len(shown)
     rows = math.ceil(len(shown) / columns)
     figure, axes = plt.subplots(
         rows,
