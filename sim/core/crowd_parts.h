@@ -74,6 +74,9 @@ struct Crowd {
     /* crowd_rest.c */
     Vec *still_position; /* by body: where it was when it last moved */
     double *still_angle, *still_time;
+    bool *told; /* by body: it was told to rest, and has not left the place since */
+    Vec *told_position;
+    double *told_angle;
     int32_t *island; /* by body: union-find */
     double *island_time;
     int32_t *ring; /* by body: the next one that was put to rest with it */
@@ -175,6 +178,7 @@ void rest_destroy(Crowd *crowd);
 bool rest_wake_joined(Crowd *crowd, World *world);
 bool rest_disturb(Crowd *crowd, World *world, int32_t body, int32_t by, bool close);
 void rest_wake_nudged(Crowd *crowd, World *world);
+void rest_forget(Crowd *crowd, int32_t body);
 int rest_update(Crowd *crowd, World *world, double dt);
 
 #endif

@@ -18,14 +18,18 @@ int rest_create(Crowd *crowd, const World *world) {
     crowd->still_position = calloc(n, sizeof *crowd->still_position);
     crowd->still_angle = calloc(n, sizeof *crowd->still_angle);
     crowd->still_time = calloc(n, sizeof *crowd->still_time);
+    crowd->told = calloc(n, sizeof *crowd->told);
+    crowd->told_position = calloc(n, sizeof *crowd->told_position);
+    crowd->told_angle = calloc(n, sizeof *crowd->told_angle);
     crowd->island = calloc(n, sizeof *crowd->island);
     crowd->island_time = calloc(n, sizeof *crowd->island_time);
     crowd->ring = calloc(n, sizeof *crowd->ring);
     crowd->touched = calloc(n, sizeof *crowd->touched);
     crowd->roused = calloc(n, sizeof *crowd->roused);
     crowd->nudged = calloc(n, sizeof *crowd->nudged);
-    if (!crowd->still_position || !crowd->still_angle || !crowd->still_time || !crowd->island || !crowd->island_time ||
-        !crowd->ring || !crowd->touched || !crowd->roused || !crowd->nudged)
+    if (!crowd->told || !crowd->told_position || !crowd->told_angle || !crowd->still_position || !crowd->still_angle ||
+        !crowd->still_time || !crowd->island || !crowd->island_time || !crowd->ring || !crowd->touched ||
+        !crowd->roused || !crowd->nudged)
         return SIM_OUT_OF_MEMORY;
     for (int32_t i = 0; i < world->body_count; i++) crowd->ring[i] = i;
     return SIM_OK;
@@ -35,6 +39,9 @@ void rest_destroy(Crowd *crowd) {
     free(crowd->still_position);
     free(crowd->still_angle);
     free(crowd->still_time);
+    free(crowd->told);
+    free(crowd->told_position);
+    free(crowd->told_angle);
     free(crowd->island);
     free(crowd->island_time);
     free(crowd->ring);
@@ -151,14 +158,32 @@ static void find_island_times(Crowd *crowd, const World *world) {
     }
 }
 
+/* How far a body is from a pose, any point of it. */
+static double distance_from(const Body *body, Vec position, double angle) {
+    return vlength(vsub(body->position, position)) + body->reach * fabs(body->angle - angle);
+}
+
+/* A body that was told to rest has gone elsewhere: it is to be told again. */
+void rest_forget(Crowd *crowd, int32_t body) { crowd->told[body] = false; }
+
+/* What was only stirred where it had come to rest is not told again. */
+static int tell_rest(Crowd *crowd, const World *world, int32_t i) {
+    if (crowd->told[i]) return SIM_OK;
+    crowd->told[i] = true;
+    crowd->told_position[i] = world->body[i].position;
+    crowd->told_angle[i] = world->body[i].angle;
+    return events_tell_rest(crowd, world, i);
+}
+
 static void update_still(Crowd *crowd, const World *world, double dt) {
     for (int32_t i = 0; i < world->body_count; i++) {
         const Body *body = &world->body[i];
         if (body->mode != MODE_CROWD) continue;
         double allowed = still_distance(world, body, crowd->tolerance);
-        double moved = vlength(vsub(body->position, crowd->still_position[i])) +
-                       body->reach * fabs(body->angle - crowd->still_angle[i]);
-        if (moved > allowed || crowd->still_time[i] == 0) {
+        if (crowd->told[i] && distance_from(body, crowd->told_position[i], crowd->told_angle[i]) > allowed)
+            rest_forget(crowd, i);
+        if (distance_from(body, crowd->still_position[i], crowd->still_angle[i]) > allowed ||
+            crowd->still_time[i] == 0) {
             crowd->still_position[i] = body->position;
             crowd->still_angle[i] = body->angle;
             crowd->still_time[i] = 0;
@@ -186,7 +211,7 @@ int rest_update(Crowd *crowd, World *world, double dt) {
             crowd->ring[i] = crowd->ring[r];
             crowd->ring[r] = i;
         }
-        int status = events_tell_rest(crowd, world, i);
+        int status = tell_rest(crowd, world, i);
         if (status != SIM_OK) return status;
     }
     return SIM_OK;

@@ -129,6 +129,7 @@ static void load(Crowd *crowd, const World *world) {
         if (body->mode != MODE_CROWD) continue;
         crowd->active[crowd->active_count++] = i;
         crowd->touched[i] = false;
+        if (!came_straight(crowd, world, i)) rest_forget(crowd, i);
         m->velocity = body->velocity;
         m->spin = body->spin;
         m->inverse_mass = body->inverse_mass;

@@ -1,5 +1,6 @@
 """What a crowd tells of itself: impacts, contacts that begin and end, rest."""
 
+import itertools
 import math
 from collections import defaultdict
 
@@ -71,13 +72,33 @@ def test_contacts_at_the_end_are_those_that_can_be_measured(pile: tuple[Scene, T
                 assert math.dist(p[i], p[j]) < 2 * RADIUS * 1.006
 
 
-def test_every_body_is_told_to_rest_after_it_moved(pile: tuple[Scene, Trajectory]) -> None:
+STILL = 7e-3 * RADIUS  # what counts as still: a body that was only stirred so far is not told to rest again
+
+
+def away(run: Trajectory, i: int, k: int) -> np.ndarray:
+    """How far any point of a body is, at each sample, from where it was at sample k."""
+    turned = np.abs(run.angles[:, i] - run.angles[k, i])
+    return np.hypot(*(run.positions[:, i] - run.positions[k, i]).T) + RADIUS * turned
+
+
+def test_every_body_is_told_to_rest_where_it_stays(pile: tuple[Scene, Trajectory]) -> None:
     scene, run = pile
     last = {e.bodies[0]: e for e in run.events if e.kind == "rest"}
     for i, body in enumerate(scene.bodies):
         if not body.anchored:
-            moving = np.nonzero(np.any(run.velocities[:, i] != 0, axis=1))[0][-1]
-            assert last[body.id].time > run.times[moving]
+            since = int(np.searchsorted(run.times, last[body.id].time - 1e-9))
+            assert away(run, i, since)[since:].max() < 2 * STILL
+
+
+def test_a_body_is_told_to_rest_again_only_if_it_left(pile: tuple[Scene, Trajectory]) -> None:
+    scene, run = pile
+    rests: dict[str | None, list[int]] = defaultdict(list)
+    for e in run.events:
+        if e.kind == "rest":
+            rests[e.bodies[0]].append(round(60 * e.time))
+    for i, body in enumerate(scene.bodies):
+        for before, after in itertools.pairwise(rests[body.id]):
+            assert away(run, i, before)[before : after + 1].max() > 0.9 * STILL
 
 
 def test_rest_is_told_once_until_a_body_moves_or_is_struck() -> None:
