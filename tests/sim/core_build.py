@@ -4,7 +4,7 @@ import importlib.util
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FIXED, REST = 0, 1  # of the core's modes
+FIXED, REST, FLIGHT = 0, 1, 2  # of the core's modes
 
 
 def build_backend():
