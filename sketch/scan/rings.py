@@ -23,6 +23,7 @@ from sketch.scan.ways import Way
 __all__ = ["find_rings", "take_rings"]
 
 Points = NDArray[np.float64]
+Box = tuple[float, float, float, float]  # left, top, right, bottom [pixels]
 
 SMALLEST, LARGEST = 0.9, 4.5  # pen widths: the radius that the pen's middle went along, as in core/belt.c
 CHINK = 1.0  # squares of the pen width: a smaller hole is one between lines that cross, for all one can tell
@@ -46,9 +47,11 @@ def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[W
         key=lambda r: -r[0],
     )
     rings: list[Way] = []
+    middles = np.zeros((0, 2))
     for roundness, middle, radius, points in found:
-        if all(np.hypot(*(r.points[:-1].mean(axis=0) - middle)) > radius for r in rings):
+        if np.all(np.hypot(*(middles - middle).T) > radius):
             rings.append(Way(points, {}, -CHANCE * roundness))
+            middles = np.concatenate([middles, points[:-1].mean(axis=0)[None]])
     return rings
 
 
@@ -102,19 +105,25 @@ def take_rings(
     parts = {k: edge.ink for k, edge in enumerate(whole)}
     nodes, radius = graph.nodes, graph.radius
     taken = []
+    boxes: dict[Edge, Box] = {}
     for ring in rings:
         middle = (ring.points.min(axis=0) + ring.points.max(axis=0)) / 2
+        place = (float(middle[0]), float(middle[1]))
         reach = float(np.hypot(*(ring.points - middle).T).max()) + BELT * pen
         inside = set(np.flatnonzero(np.hypot(*(graph.nodes - middle).T) < reach).tolist())
-        within = [np.hypot(*(edge.points - middle).T) < reach for edge in graph.edges]
-        crossing = [k for k, points in enumerate(within) if points.any()]
+        within = {
+            k: np.hypot(*(edge.points - middle).T) < reach
+            for k, edge in enumerate(graph.edges)
+            if _comes_near(edge, place, reach, boxes)
+        }
+        crossing = [k for k, points in within.items() if points.any()]
         around = float(np.hypot(*np.diff(ring.points, axis=0).T).sum())
         if not crossing:
             continue  # a better ring has it all
         only = within[crossing[0]]
         if len(crossing) == 1 and only.mean() > 0.5 and np.count_nonzero(only) > ALL_ROUND * around:
             continue  # it stands by itself
-        ink = _take(graph, middle, reach, inside, pen, names, parts)
+        ink = _take(graph, middle, reach, inside, pen, names, parts, boxes)
         hidden = round(around) - sum(map(len, ink.values()))
         if hidden > 0:  # thinning leaves less of a blot than was drawn
             ink[next(names)] = ring.points[np.arange(hidden) % len(ring.points)]
@@ -125,6 +134,16 @@ def take_rings(
     for k, edge in enumerate(whole):
         edge.ink = parts[k]
     return Graph(nodes, radius, [edge for edge, there in zip(whole, near, strict=True) if there]), taken
+
+
+def _comes_near(edge: Edge, middle: tuple[float, float], reach: float, boxes: dict[Edge, Box]) -> bool:
+    """Whether the box around an edge comes within reach: on a page of writing few do."""
+    if edge not in boxes:
+        (left, top), (right, bottom) = edge.points.min(axis=0).tolist(), edge.points.max(axis=0).tolist()
+        boxes[edge] = left, top, right, bottom
+    left, top, right, bottom = boxes[edge]
+    x, y = middle
+    return left - reach < x < right + reach and top - reach < y < bottom + reach
 
 
 def _reached(edges: list[Edge], touched: list[bool]) -> list[bool]:
@@ -145,18 +164,24 @@ def _take(
     pen: float,
     names: Iterator[int],
     parts: dict[int, Ink],
+    boxes: dict[Edge, Box],
 ) -> Ink:
     """Cut a ring out of the graph, in place; returns its ink.
 
-    names: for stretches of ink that are new by being cut.  parts: of each whole edge, the stretches.
+    names: for stretches of ink that are new by being cut.  parts: of each whole edge, the stretches.  boxes: around
+    edges, as far as they are known.
     """
     node = len(graph.nodes)
     graph.nodes = np.concatenate([graph.nodes, middle[None]])
     graph.radius = np.append(graph.radius, reach)
     edges = []
     ink: Ink = {}
+    place = (float(middle[0]), float(middle[1]))
     for edge in graph.edges:
         head, tail = (node if end in inside else end for end in edge.ends)
+        if (head, tail) == edge.ends and not _comes_near(edge, place, reach, boxes):
+            edges.append(edge)
+            continue
         outside = np.hypot(*(edge.points - middle).T) >= reach
         if outside.all() and (head, tail) == edge.ends:
             edges.append(edge)
