@@ -151,7 +151,7 @@ class _Prices:
         """Nats that a reading owes where it says ink less precisely than the smallest thing that it may be part of
         would: a pivot's ring is no bump on a long side."""
         off = np.maximum(_off(c, [self._some[name] for name in names]) - OFF * self._pen, 0.0)
-        scale = np.array([self._scale[name] for name in names])
+        scale = np.maximum([self._scale[name] for name in names], self._pen / 2)  # nothing drawn is smaller
         fine = np.array([self._fine.get(name, 0.0) for name in names])
         free = np.array([self._free.get(name, 0.0) for name in names])
         whole = c.scale or np.inf
