@@ -142,7 +142,8 @@ class Sheet:
         one, *others = sorted(some, key=lambda f: -self.faces[f].area) if within else [-1]
         for f in others:
             into, face = self.faces[one], self.faces.pop(f)
-            self.face.update((h, one) for h in face.sides)
+            # also of its lines that lie within it and are no sides any more
+            self.face.update([(h, one) for h, beside_it in self.face.items() if beside_it == f])
             into.sides += face.sides
             into.loops += face.loops
             into.area += face.area
