@@ -32,8 +32,8 @@ TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.25  # of a bar's extent: as near as the strokes of a letter are
 LETTER = 0.15  # of the page: larger bars are no letter
 DENSE = 64  # points of an open line that are compared with others, or so
-TWIG = 0.04  # of the page: an open line, or an arrow, that is shorter is a slip too
-DOT = 0.012  # of the page: nobody draws a smaller body
+TWIG = 0.04  # of what is drawn: an open line, or an arrow, that is shorter is a slip too
+DOT = 0.012  # of what is drawn: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
 
 
@@ -44,19 +44,22 @@ class Context:
         self._gaps: Gaps = {}
         self._known: dict[Proposed, list[float]] = {}
         self._bodies: Around = {}
-        self._size = 0.0
+        self._sizes = (0.0, 0.0)
 
-    def told(self, proposed: list[Proposed], likely: list[Pick], size: float) -> list[list[float]]:
+    def told(
+        self, proposed: list[Proposed], likely: list[Pick], size: float, drawn: float
+    ) -> list[list[float]]:
         """The gains of all that is proposed, given the bodies that the ink by itself makes likely.
 
-        likely: which of it they are.  size: of the page [pixels].
+        likely: which of it they are.  size: of the page [pixels]; what is small on it may be a letter.  drawn: of
+        what is drawn on it [pixels]; what is small in that is no part of it.
         """
         chosen = [(proposed[p].candidates[k], proposed[p].rows[k]) for p, k in likely]
         bodies = {c: row for c, row in chosen if c.closed or c.kind == "cross"}
         others = {
             c: row for c, row in (self._bodies | bodies).items() if c not in bodies or c not in self._bodies
         }
-        known = self._known if size == self._size else {}
+        known = self._known if (size, drawn) == self._sizes else {}
         changed = {k for k, _ in _beside(proposed, others)}
         anew = [k for k, p in enumerate(proposed) if k in changed or p not in known]
         near: dict[int, Around] = {k: {} for k in anew}
@@ -64,9 +67,11 @@ class Context:
         for k, b in _beside([proposed[k] for k in anew], bodies):
             body, row = every[b]
             near[anew[k]][body] = row
-        told = [_told(p, _Bodies(near[k]), size) if k in near else known[p] for k, p in enumerate(proposed)]
+        told = [
+            _told(p, _Bodies(near[k]), size, drawn) if k in near else known[p] for k, p in enumerate(proposed)
+        ]
         self._known = dict(zip(proposed, told, strict=True))
-        self._bodies, self._size = bodies, size
+        self._bodies, self._sizes = bodies, (size, drawn)
         out = list(told)
         first = _first_arrow(proposed, told, likely)
         for n, p in enumerate(proposed):
@@ -87,23 +92,23 @@ def _beside(proposed: list[Proposed], bodies: Around) -> list[list[int]]:
     return beside(np.array([p.box for p in proposed]), np.array(list(bodies.values())))
 
 
-def _told(proposed: Proposed, bodies: _Bodies, size: float) -> list[float]:
+def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> list[float]:
     """The gains of one piece's proposals, given the bodies around them."""
     gains = list(proposed.gains)
     for k, (c, row) in enumerate(zip(proposed.candidates, proposed.rows, strict=True)):
         if gains[k] < -NO_BODY:
             continue
         extent = row[4]
-        if c.closed and extent < DOT * size:  # where the pen rested
-            gains[k] -= 0.5 * (math.log(DOT * size / max(extent, 1e-9)) / DOT_SPREAD) ** 2
+        if c.closed and extent < DOT * drawn:  # where the pen rested
+            gains[k] -= 0.5 * (math.log(DOT * drawn / max(extent, 1e-9)) / DOT_SPREAD) ** 2
         if c.kind == "cross":
             large = extent > LETTER * size  # nobody writes an X so large: two rods
             gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY * (1 + large)
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
-            gains[k] -= SLIP * ((extent < TWIG * size) + bodies.slip(c, extent))
+            gains[k] -= SLIP * ((extent < TWIG * drawn) + bodies.slip(c, extent))
         elif c.kind == "bar":
-            gains[k] -= SLIP * (extent < TWIG * size or bodies.slip(c, extent))
+            gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)
         elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
             gains[k] += ANCHORS

@@ -27,7 +27,7 @@ JOINS = (
     0.3  # radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
 )
 NAILS = 0.12  # likewise of a pivot to the background: a ball in front of one body is common
-PIN = 0.02  # likewise over the longer side of the page: what is larger is no nail, however large what it lies on is
+PIN = 0.02  # likewise over the longer side of page or ink: what is larger is no nail, however large what it lies on is
 WHEEL = 20.0  # times that a circle with a much smaller one at its centre is likelier a wheel than a pin
 NEAR = 2.5  # radii from a pivot's centre to a body that it misses by a slip of the hand
 AROUND = 5.0  # radii, likewise to one whose ink runs on beyond its outline, into the circle
@@ -56,7 +56,7 @@ def interpret(
         for k, r in enumerate((r for r in readings if r.solid), start=1)
     ]
     bodies = Bodies(drawn)
-    joints = _pivots(sketch, bodies, view.pixels_per_metre, PIN * longer, notes)
+    joints = _pivots(sketch, bodies, view.pixels_per_metre, PIN * max(longer, _extent(sketch)), notes)
     drawn = [d for d in drawn if d.reading.solid]
     _number(drawn, joints)
     for reading in readings:
@@ -92,10 +92,15 @@ def _view(sketch: Sketch, scale: float | None) -> tuple[View, float]:
     """The view, and the longer side of the page [pixels]: of the ink and a margin where no canvas is given."""
     longer = max(sketch.width or 0.0, sketch.height or 0.0)
     if longer == 0:
-        ink = np.concatenate([np.empty((0, 2)), *(s.points for s in sketch.strokes)])
-        longer = (1.1 * float(np.ptp(ink, axis=0).max()) if len(ink) else 0.0) or 1.0
+        longer = 1.1 * _extent(sketch) or 1.0
     ppm = scale or sketch.pixels_per_metre or longer / PAGE
     return View(pixels_per_metre=ppm, width=sketch.width, height=sketch.height), longer
+
+
+def _extent(sketch: Sketch) -> float:
+    """The longer side of the box around all ink [pixels], which may be larger than the page."""
+    ink = np.concatenate([np.empty((0, 2)), *(s.points for s in sketch.strokes)])
+    return float(np.ptp(ink, axis=0).max()) if len(ink) else 0.0
 
 
 def _number(drawn: list[Drawn], joints: list[Joint]) -> None:

@@ -17,6 +17,7 @@ from sketch.scoring import unread
 
 __all__ = ["Looked", "Page", "Piece", "page_of"]
 
+SPECK = 1 / 8  # of the canvas: what is drawn on less of it is small, not a page of its own
 DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
@@ -92,6 +93,7 @@ class Page:
         pieces: by index, those that have a length, in the order of drawing.
         strokes: their measures as arrays, for the fits; a piece's row is its stroke.
         size: of the page [pixels]; the canvas', or so much more as the ink takes.
+        drawn: how much of it the ink takes [pixels], whatever the canvas, short of specks on it.
         rivals: of each stroke, the others that are the same ink, followed in another way: no two of them are in
             one reading.  Without any, empty.
         ends: of its pieces, as far as they are loose.
@@ -103,7 +105,7 @@ class Page:
         self.rivals = rivals
         self.pieces: dict[int, Piece] = {}
         self.strokes = measure([])
-        self.size = self._canvas = canvas
+        self.size = self.drawn = self._canvas = canvas
         self.ends = LooseEnds(rivals)
         self.looked = Looked()
         self._dot = 0.0
@@ -153,13 +155,14 @@ class Page:
         for i in changed:
             p = self.pieces[i]
             self.pieces[i] = replace(p, observations=_observations(p.length, p.extent, dot))
-        size = self._canvas
+        self.size = self.drawn = self._canvas
         if live:
             boxes = self._boxes[live]
             ink = math.hypot(*(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).tolist())
-            if ink > size:  # in steps, so that a page that grows is seldom another page
-                size = 2 ** (math.ceil(2 * math.log2(ink)) / 2)
-        self.size = size
+            # In steps, so that a page that grows is seldom another page.
+            stepped = 2 ** (math.ceil(2 * math.log2(ink)) / 2)
+            self.size = stepped if ink > self._canvas else self._canvas
+            self.drawn = max(SPECK * self._canvas, stepped)
         return changed
 
     # ------------------------------------------------------------ what lies where

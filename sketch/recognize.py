@@ -183,7 +183,8 @@ class Recognizer:
         if forced:
             proposed = _with_forced(self._proposals.page, proposed, forced)
         likely: list[Pick] = self._alone.best([p.alone for p in proposed])
-        told = self._context.told(proposed, likely, self._proposals.page.size)
+        page = self._proposals.page
+        told = self._context.told(proposed, likely, page.size, page.drawn)
         known, self._parts = self._parts, {}
         for p, gains in zip(proposed, told, strict=True):
             there = known.get(p)

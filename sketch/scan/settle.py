@@ -94,7 +94,7 @@ def settle(
             last, chosen = chosen, [live[k] for k in packed]
             if chosen == last:
                 break
-            told.append(context.told([proposed], [(0, k) for k in chosen], page.size)[0])
+            told.append(context.told([proposed], [(0, k) for k in chosen], page.size, page.drawn)[0])
             if (total := sum(told[-1][k] for k in chosen)) > most:  # as they stand around one another
                 best, most = chosen, total
             # of two sets each may speak for the other: what all of them say in the mean speaks for one

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pages import box, kinds, ngon, page, read, turned
 
 from sim.scene import Circle, Polygon
-from sketch import recognize
+from sketch import Sketch, Stroke, recognize
 from sketch.synthetic import HANDS, Hand, arrow, circle, cross, ellipse, line, outline
 
 Array = NDArray[np.float64]
@@ -381,6 +381,24 @@ def test_balls_in_a_frame_are_not_nailed_to_it(hand, rng) -> None:
     scene = read(frame, *balls).scene
     assert [type(b.shape) for b in scene.bodies[1:]] == [Circle] * 4
     assert scene.joints == []
+
+
+@pytest.mark.parametrize("times", [0.3, 1.0, 4.0])
+def test_a_pin_stays_one_at_any_size_on_the_same_page(times: float) -> None:
+    hand, rng = HANDS["neat"], np.random.default_rng(3)
+    ink = outline(box(600, 350, 80, 600), hand, rng) + circle((600, 90), 11, hand, rng)
+    sketch = Sketch([Stroke(times * stroke) for stroke in ink], 1280, 720)
+    assert [j.bodies for j in recognize(sketch).scene.joints] == [("b1", None)]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_drawing_is_read_alike_on_any_page_that_it_is_not_a_speck_on(seed: int) -> None:
+    hand, rng = HANDS["quick"], np.random.default_rng(seed)
+    ink = outline(box(640, 400, 420, 90), hand, rng) + arrow((1100, 120), (1100, 190), hand, rng)
+    ink += [s for x in (500, 780) for r in (70, 11) for s in circle((x, 425), r, hand, rng)]
+    strokes = [Stroke(s) for s in ink]
+    said = [[(r.kind, r.score) for r in recognize(Sketch(strokes, w, w / 2)).readings] for w in (1280, 4000)]
+    assert said[0] == said[1]
 
 
 def test_a_ring_within_a_pivot_is_that_pivot() -> None:
