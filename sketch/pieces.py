@@ -128,7 +128,7 @@ class Page:
         self._points = np.concatenate([self._points, places])
         residuals, vertices = new.residual.tolist(), new.vertices.tolist()
         for k, m in enumerate(new.measure.tolist()):
-            if m[0] > 0:
+            if m[6] > 0:  # of a length, and not so tiny that nothing is left of its square
                 i = first + k
                 self.pieces[i] = _piece(i, i, points[k], m, residuals[k], vertices[k], self._dot)
                 piece = self.pieces[i]

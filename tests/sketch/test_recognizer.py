@@ -117,3 +117,13 @@ def test_a_million_points_are_read_as_a_few_are() -> None:
     (body,) = recognize(Sketch([ring], 600.0, 600.0)).scene.bodies
     assert time.process_time() - begin < 1
     assert body.shape.radius * 60 == pytest.approx(100, rel=1e-3)
+
+
+@pytest.mark.parametrize("size", [1e-310, 1e-170, 1e-12])
+def test_a_stroke_whose_size_vanishes_is_left_out_and_named(size: float) -> None:
+    speck = Stroke(np.array([[0.0, 0.0], [size, size], [0.0, 0.0]]))
+    square = Stroke(np.array([[9.0, 9.0], [90.0, 9.0], [90.0, 90.0], [9.0, 90.0], [9.0, 9.0]]))
+    for strokes in ([speck], [speck, square]):
+        scene = recognize(Sketch(strokes)).scene
+        assert len(scene.bodies) == len(strokes) - 1
+        assert any("stroke 0" in note for note in scene.notes)
