@@ -63,6 +63,21 @@ INK_API double ink_depth(double x, double y, const double *outline, int32_t n);
 /* Of a vector whose squares neither vanish nor overflow: in an outline's own frame. hypot takes five times as long. */
 static inline double length(double x, double y) { return sqrt(x * x + y * y); }
 
+/* Of ink taken as a course of segments: its length, and the sums over it of x, y and of xx, xy, yy. */
+typedef struct {
+    double length, x[2], xx[3];
+} Moments;
+
+/* Take in a segment of some length, by its vector and its middle. */
+static inline void add_segment(Moments *m, double length, double dx, double dy, double cx, double cy) {
+    m->length += length;
+    m->x[0] += length * cx;
+    m->x[1] += length * cy;
+    m->xx[0] += length * (cx * cx + dx * dx / 12);
+    m->xx[1] += length * (cx * cy + dx * dy / 12);
+    m->xx[2] += length * (cy * cy + dy * dy / 12);
+}
+
 /* The rectangle nearest to a quadrilateral, (4, 2) [pixels], and the mean squared distance that it adds in a frame with normal
  * = to * pixel; infinite where the quadrilateral is like none. */
 double nearest_rectangle(const double *corners, const double to[4], double *box);

@@ -18,27 +18,22 @@ typedef struct {
 
 /* Second moments of the chain taken as a closed curve (the gaps bridged), so that a missing piece moves them little. */
 static Frame normal_frame(const double *xy, int n, double least_axis) {
-    double w = 0, m[2] = {0, 0}, s[3] = {0, 0, 0};
+    double w = 0, m[2] = {0, 0};
+    Moments t;
     for (int pass = 0; pass < 2; pass++) { /* the mean first: moments about it keep their digits */
-        double a[2] = {0, 0};
-        w = s[0] = s[1] = s[2] = 0;
+        t = (Moments){0};
         for (int i = 0, j = n - 1; i < n; j = i++) {
-            double dx = xy[2 * i] - xy[2 * j], dy = xy[2 * i + 1] - xy[2 * j + 1], l = hypot(dx, dy);
+            double dx = xy[2 * i] - xy[2 * j], dy = xy[2 * i + 1] - xy[2 * j + 1];
             double cx = 0.5 * (xy[2 * i] + xy[2 * j]) - m[0], cy = 0.5 * (xy[2 * i + 1] + xy[2 * j + 1]) - m[1];
-            w += l;
-            a[0] += l * cx;
-            a[1] += l * cy;
-            s[0] += l * (cx * cx + dx * dx / 12);
-            s[1] += l * (cx * cy + dx * dy / 12);
-            s[2] += l * (cy * cy + dy * dy / 12);
+            add_segment(&t, hypot(dx, dy), dx, dy, cx, cy);
         }
-        if (w <= 0) w = 1;
+        w = t.length > 0 ? t.length : 1;
         if (pass == 0) {
-            m[0] = a[0] / w;
-            m[1] = a[1] / w;
+            m[0] = t.x[0] / w;
+            m[1] = t.x[1] / w;
         }
     }
-    double half = 0.5 * (s[0] - s[2]) / w, mid = 0.5 * (s[0] + s[2]) / w, off = s[1] / w;
+    double half = 0.5 * (t.xx[0] - t.xx[2]) / w, mid = 0.5 * (t.xx[0] + t.xx[2]) / w, off = t.xx[1] / w;
     double spread = sqrt(half * half + off * off), angle = 0.5 * atan2(off, half);
     double c = cos(angle), sn = sin(angle);
     double p = sqrt(2 * fmax(mid + spread, 0)), q = sqrt(2 * fmax(mid - spread, 0)); /* radii of the like ellipse */
@@ -191,21 +186,17 @@ static void own_scale(const double *z, const int32_t *part_end, int parts, doubl
     double done = 0;
     int k = 0;
     for (int p = 0, i = 0; p < parts; i = part_end[p++]) {
-        double l = 0, m[2] = {0, 0}, s[3] = {0, 0, 0}, f = 1;
+        Moments t = {0};
         for (int j = i + 1; j < part_end[p]; j++) {
-            double dx = z[2 * j] - z[2 * j - 2], dy = z[2 * j + 1] - z[2 * j - 1], w = length(dx, dy);
+            double dx = z[2 * j] - z[2 * j - 2], dy = z[2 * j + 1] - z[2 * j - 1];
             double cx = 0.5 * (z[2 * j] + z[2 * j - 2]), cy = 0.5 * (z[2 * j + 1] + z[2 * j - 1]);
-            l += w;
-            m[0] += w * cx;
-            m[1] += w * cy;
-            s[0] += w * (cx * cx + dx * dx / 12);
-            s[1] += w * (cx * cy + dx * dy / 12);
-            s[2] += w * (cy * cy + dy * dy / 12);
+            add_segment(&t, length(dx, dy), dx, dy, cx, cy);
         }
         int e = part_end[p] - 1;
+        double l = t.length, f = 1;
         if (l > 0) {
-            double xx = s[0] / l - m[0] * m[0] / (l * l), yy = s[2] / l - m[1] * m[1] / (l * l);
-            double xy = s[1] / l - m[0] * m[1] / (l * l), half = 0.5 * (xx - yy);
+            double xx = t.xx[0] / l - t.x[0] * t.x[0] / (l * l), yy = t.xx[2] / l - t.x[1] * t.x[1] / (l * l);
+            double xy = t.xx[1] / l - t.x[0] * t.x[1] / (l * l), half = 0.5 * (xx - yy);
             double size2 = 4 * (xx + yy); /* 1 for a side of a square */
             if (length(z[2 * e] - z[2 * i], z[2 * e + 1] - z[2 * i + 1]) < 0.15 * l)
                 size2 = 2 * (0.5 * (xx + yy) - sqrt(half * half + xy * xy));

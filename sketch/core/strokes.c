@@ -37,27 +37,19 @@ static int hook_end(const double *p, int first, int step, int n, double reach) {
 }
 
 static void moments(const double *p, int n, double *length, double mean[2], double s[3]) {
-    double l = 0, m[2] = {0, 0};
-    s[0] = s[1] = s[2] = 0;
+    Moments t = {0};
     for (int i = 1; i < n; i++) {
-        double dx = p[2 * i] - p[2 * i - 2], dy = p[2 * i + 1] - p[2 * i - 1], w = hypot(dx, dy);
+        double dx = p[2 * i] - p[2 * i - 2], dy = p[2 * i + 1] - p[2 * i - 1];
         double cx = 0.5 * (p[2 * i] + p[2 * i - 2]) - p[0], cy = 0.5 * (p[2 * i + 1] + p[2 * i - 1]) - p[1];
-        l += w;
-        m[0] += w * cx;
-        m[1] += w * cy;
-        s[0] += w * (cx * cx + dx * dx / 12);
-        s[1] += w * (cx * cy + dx * dy / 12);
-        s[2] += w * (cy * cy + dy * dy / 12);
+        add_segment(&t, hypot(dx, dy), dx, dy, cx, cy);
     }
-    *length = l;
-    double w = l > 0 ? 1 / l : 0;
-    m[0] *= w;
-    m[1] *= w;
-    s[0] = s[0] * w - m[0] * m[0];
-    s[1] = s[1] * w - m[0] * m[1];
-    s[2] = s[2] * w - m[1] * m[1];
-    mean[0] = p[0] + m[0];
-    mean[1] = p[1] + m[1];
+    *length = t.length;
+    double w = t.length > 0 ? 1 / t.length : 0, mx = t.x[0] * w, my = t.x[1] * w;
+    s[0] = t.xx[0] * w - mx * mx;
+    s[1] = t.xx[1] * w - mx * my;
+    s[2] = t.xx[2] * w - my * my;
+    mean[0] = p[0] + mx;
+    mean[1] = p[1] + my;
 }
 
 static double least_spread(const double s[3]) {
