@@ -24,9 +24,8 @@ ANCHORS = 15.0
 NO_BODY = 33.0  # nats that an X away from every body is unlikely: it would mean nothing
 ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on,
 LARGER = 2.0  # times as large as the X, at least: else it is a part of an asterisk
-ONE_ARROW = (
-    15.0  # nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two
-)
+# nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two
+ONE_ARROW = 15.0
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.25  # of a bar's extent: as near as the strokes of a letter are

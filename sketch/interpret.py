@@ -23,9 +23,8 @@ Array = NDArray[np.float64]
 GRAVITY = 9.81
 PAGE = 10.0  # metres: the longer side of a page without a scale
 PEN = 1 / 320  # of the longer side of the page: the thickness of a bar
-JOINS = (
-    0.3  # radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
-)
+# radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
+JOINS = 0.3
 NAILS = 0.12  # likewise of a pivot to the background: a ball in front of one body is common
 PIN = 0.02  # likewise over the longer side of page or ink: what is larger is no nail, however large what it lies on is
 WHEEL = 20.0  # times that a circle with a much smaller one at its centre is likelier a wheel than a pin

@@ -161,16 +161,8 @@ class ArrowFit(NamedTuple):
     off: list[float]
 
 
-_COUNTS = (
-    10,
-    2,
-    10,
-    SIDES + 1,
-    SIDES + 1,
-    2 * SIDES * (SIDES + 1),
-    9,
-    SIDES + 1,
-)  # of ink_closed's results, in order
+# of ink_closed's results, in order
+_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1), 9, SIDES + 1)
 _OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
 
 

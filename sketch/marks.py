@@ -24,9 +24,8 @@ __all__ = [
 ]
 
 MOST_BENDS = 5
-STRAIGHT = (
-    0.02  # of its half extent: usual spread of a rod's ink; what is off by much more is bent on purpose
-)
+# of its half extent: usual spread of a rod's ink; what is off by much more is bent on purpose
+STRAIGHT = 0.02
 LIFT = 0.1  # of a bar's length: what lacks where the pen was lifted,
 ASIDE = 0.06  # and how far aside it went on, at most
 BEND = 3.0  # nats for each corner of a bar
@@ -34,16 +33,11 @@ SHARP = 12.0  # nats that a right angle is rarer in a bar, one that folds it bac
 HEAD = 2.0  # nats an observation to say ink freely, where it lies within an arrow's head
 SHAFT = 0.55  # of the shaft: what the distance of an arrow's ink goes with,
 GAPS = 0.5  # and how far any of the arrow is from ink: a barb that nobody drew is no slip of the hand
-OFTEN = (
-    1.3,
-    2.0,
-    2.0,
-)  # times that a shaft and the barbs of an arrow are drawn: the pen comes back along a barb
+# times that a shaft and the barbs of an arrow are drawn: the pen comes back along a barb
+OFTEN = (1.3, 2.0, 2.0)
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it
-LOOP = (
-    0.12,
-    0.2,
-)  # of its length, what the ends of a loop are apart; of its extent, half of a wide one's thickness
+# of its length, what the ends of a loop are apart; of its extent, half of a wide one's thickness
+LOOP = (0.12, 0.2)
 OFF_BAR = 0.22  # of an X's half extent: ink further from its bars is said in fewer nats freely than as theirs
 RARE = 25.0  # nats that an open line is rarer than an outline
 ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning

@@ -98,9 +98,8 @@ class Recognizer:
         self._context = Context()
         self._alone = Packing()
         self._together = Packing()
-        self._parts: dict[
-            Proposed, tuple[list[float], Part]
-        ] = {}  # gains with all that is around, and of these
+        # of each the gains with all that is around, and what the search makes of these
+        self._parts: dict[Proposed, tuple[list[float], Part]] = {}
         self._places: dict[Fitted, Placed] = {}
         self._strokes: dict[int, Stroke] = {}
         self._pieces: dict[int, list[int]] = {}  # of each stroke the things drawn in it: mostly one

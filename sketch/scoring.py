@@ -30,9 +30,8 @@ SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the ra
 PARAMETER = 4.0  # nats to say one parameter to that precision: about ln(page / tremor)
 FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 35.0  # nats to say that something was drawn that has no meaning here,
-LINE = (
-    11.0  # and was as much as a straight line: so many observations; a tap of the pen is less of a surprise
-)
+# and was as much as a straight line: so many observations; a tap of the pen is less of a surprise
+LINE = 11.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,8 @@ Packed = tuple[Group, float]  # and what it gains
 MOST_PIECES = 400  # in one cluster: beyond, it is shading, and the best groups are taken one after another
 MOST_TRIED = 24  # groups of a piece, the best by the piece, that may outdo another
 ROUNDS = 2  # of lowering the pieces' shares in what a packing may gain
-MOST_LOOKS = (
-    100_000  # at groups, in one cluster: shading and grids, where no set is right, end with the best so far
-)
+# looks at groups, in one cluster: shading and grids, where no set is right, end with the best so far
+MOST_LOOKS = 100_000
 
 
 @dataclass(frozen=True, eq=False, slots=True)

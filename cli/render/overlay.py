@@ -20,9 +20,8 @@ __all__ = ["overlay"]
 
 Array = NDArray[np.float64]
 
-LONGER_SIDE = (
-    1600  # of an overlay [pixels]; a larger picture is reduced, a smaller one drawn as large as it is
-)
+# of an overlay [pixels]; a larger picture is reduced, a smaller one drawn as large as it is
+LONGER_SIDE = 1600
 BODIES = ("circle", "rectangle", "polygon", "bar")
 ANCHOR, PIVOT, GRAVITY = (rgb(color) for color in ("#b5651d", "#111418", "#0b6e4f"))
 

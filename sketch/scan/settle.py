@@ -31,9 +31,8 @@ __all__ = ["settle"]
 Points = NDArray[np.float64]
 
 ROUNDS = 6  # of choosing, each with what the readings chosen before say about those around them
-OFF = (
-    0.5  # pen widths that ink may be off what was fitted to it, for all that tracing leaves of it in a tangle
-)
+# pen widths that ink may be off what was fitted to it, for all that tracing leaves of it in a tangle
+OFF = 0.5
 MOSTLY = 0.1  # of a reading's ink: of two that have such a stretch in common neither stands around the other
 SAMPLES = 8  # or a few more points of a stretch that are compared with what was fitted
 TO_COMPLEX = np.array([1, 1j])
@@ -109,9 +108,8 @@ class _Prices:
         """page: with the ways for pieces, the likeliest first.  likeliest: how many those are, which take all the ink.
         pen: its width [pixels]."""
         self._ways, self._page, self._pen = ways, page, pen
-        self._free: dict[
-            int, float
-        ] = {}  # nats to say each stretch of ink freely, as strokes of the likeliest ways
+        # nats to say each stretch of ink freely, as strokes of the likeliest ways
+        self._free: dict[int, float] = {}
         self._fine: dict[int, float] = {}  # observations that it is worth, likewise
         self._strange: dict[int, float] = {}  # of the nats, those for being a stroke of its own
         self._scale: dict[int, float] = {}  # [pixels] of the smallest thing that it may be part of
