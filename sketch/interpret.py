@@ -65,6 +65,11 @@ def interpret(
     if tidy:
         notes += close_gaps(drawn, joints, pull, view.pixels_per_metre)
     notes += [text for d in drawn for text in _doubts(d)]
+    bars = [d for d in drawn if d.reading.kind == "bar"]
+    if bars:
+        what = "is an open line: a bar" if len(bars) == 1 else "are open lines: bars"
+        strokes = _strokes(s for d in bars for s in d.reading.strokes)
+        notes.append(f"{_ids(bars)} ({strokes}) {what} as thick as the pen")
     read = Counter(s for r in readings if r.kind != "unread" for s in r.strokes)
     left = sorted(s for r in readings if r.kind == "unread" and r.forced is None for s in r.strokes)
     if left:
@@ -255,7 +260,8 @@ def _off_ink(sketch: Sketch, d: Drawn, at: Array) -> float:
 
 
 def _ids(bodies: list[Drawn]) -> str:
-    return " and ".join(d.body.id for d in bodies)
+    *most, last = [d.body.id for d in bodies]
+    return f"{', '.join(most)} and {last}" if most else last
 
 
 def _either(circle: Drawn, taken: str, other: str) -> str:
@@ -298,7 +304,7 @@ def _gravity(readings: list[Reading], notes: list[str]) -> tuple[float, float]:
 
 
 def _doubts(d: Drawn) -> list[str]:
-    """What a person should look at: rivals that are nearly as likely, lines as bars, irregular outlines."""
+    """What a person should look at: rivals that are nearly as likely, irregular outlines."""
     reading, out = d.reading, []
     # a rectangle and a polygon of four sides are the same body
     rivals = [
@@ -307,9 +313,7 @@ def _doubts(d: Drawn) -> list[str]:
     if rivals and reading.forced is None:
         kind, score = rivals[0]
         out.append(f"{d.body.id} ({reading.named}) may also be {_a(kind)} ({score:.0%})")
-    if reading.kind == "bar":
-        out.append(f"{d.body.id} ({reading.named}) is an open line: a bar as thick as the pen")
-    elif reading.kind == "polygon" and len(reading.outline) <= 12 and reading.rough > ROUGH:
+    if reading.kind == "polygon" and len(reading.outline) <= 12 and reading.rough > ROUGH:
         sides = len(reading.outline)
         out.append(
             f"{d.body.id} ({reading.named}) is no clean polygon: {sides} sides come nearest to its ink"
