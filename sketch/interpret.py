@@ -188,16 +188,15 @@ def _under(
 ) -> tuple[list[Drawn], float]:
     """The bodies that a circle would be a pivot of, in order of drawing, and how likely it is one rather than a ball.
 
-    The one that its centre is over, and one more that it is over or misses by a slip of the hand; or else two that
-    meet in it, if it is as small as a nail.
+    The foremost two that its centre is over, or the one and one more that it misses by a slip of the hand; or else two
+    that meet in it, if it is as small as a nail.
     """
     near = _near(circle, at, AROUND * radius, bodies)
     over = bool(near) and near[0][0] <= 0
     if over:
         (_, first), *rest = near
-        others = [d for depth, d in rest if depth < 0] or [
-            d for _, d in rest if _off_ink(sketch, d, at) < radius
-        ]
+        missed = [d for depth, d in rest if depth >= 0 and _off_ink(sketch, d, at) < radius]
+        first, *others = _foremost([first, *(d for depth, d in rest if depth < 0)], missed)
         reach = NEAR * radius
     else:
         rest = [(depth, d) for depth, d in near if depth < NEAR * radius and radius < NAILS * d.size]
@@ -216,6 +215,19 @@ def _under(
     limit = JOINS if len(under) == 2 and over else NAILS
     odds = 1 / (1 + (radius / (limit * min(d.size for d in under))) ** 6)
     return sorted(under, key=bodies.drawn.index), odds
+
+
+def _foremost(over: list[Drawn], missed: list[Drawn]) -> list[Drawn]:
+    """Of bodies that a point is over, or misses by a slip of the hand, those in front first.
+
+    One that holds the whole of another is what that moves in front of; of others, over which it is, the one drawn
+    last is.
+    """
+    every = [*over, *missed]
+    if len(every) < 3:
+        return every
+    holds = {d: sum(all(d.depth(p) < 0 for p in e.outline) for e in every if e is not d) for d in every}
+    return sorted(every, key=lambda d: (holds[d], d in missed, -d.reading.strokes[-1]))
 
 
 def _near(circle: Drawn, at: Array, reach: float, bodies: Bodies) -> list[tuple[float, Drawn]]:
@@ -272,7 +284,8 @@ def _either(circle: Drawn, taken: str, other: str) -> str:
 
 
 def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
-    """Fix the body that an X lies over: of several the one drawn last, of none the one that its bars reach."""
+    """Fix the body that an X lies over: of several the one that most of its bars' ends lie in, and of those the one
+    drawn last; of none the one that its bars reach."""
     at = reading.outline.mean(axis=0)
     reach = float(np.hypot(*np.ptp(reading.outline, axis=0))) / 2
     near = [(d.depth(at), d) for d in bodies.near(at, reach) if d.reading.solid]
@@ -283,10 +296,14 @@ def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
     if not over:
         notes.append(f"the X of {reading.named} is over no body: it anchors nothing")
         return
-    top = max(over, key=lambda d: d.reading.strokes[-1])
+    ends = reading.outline
+    within = {d: sum(d.depth(end) < 0 for end in ends) for d in over}
+    held = [d for d in over if within[d] == max(within.values())]
+    top = max(held, key=lambda d: d.reading.strokes[-1])
     top.body.anchored = True
     if len(over) > 1:
-        notes.append(f"the X of {reading.named} is over {_ids(over)}: it anchors {top.body.id}, drawn last")
+        why = "drawn last" if len(held) > 1 else "in which it was drawn"
+        notes.append(f"the X of {reading.named} is over {_ids(over)}: it anchors {top.body.id}, {why}")
 
 
 def _gravity(readings: list[Reading], notes: list[str]) -> tuple[float, float]:

@@ -39,6 +39,7 @@ STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to
 # of its length, what the ends of a loop are apart; of its extent, half of a wide one's thickness
 LOOP = (0.12, 0.2)
 OFF_BAR = 0.22  # of an X's half extent: ink further from its bars is said in fewer nats freely than as theirs
+MOSTLY = 0.6  # of an X's ink: what lies on its bars; a side that joins them is no longer than either
 RARE = 25.0  # nats that an open line is rarer than an outline
 ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning
 THIN = 0.004  # of the length of such a line: what it is as thick as, at least
@@ -177,6 +178,8 @@ def _joined(page: Page, piece: Piece, bars: Array) -> float:
     square = ((from_start - t[..., None] * along) ** 2).sum(axis=2).min(axis=1)
     on = square < (OFF_BAR * piece.extent / 2) ** 2
     share = float(on.mean())
+    if share < MOSTLY:
+        return math.inf
     mean = float(square[on].mean()) / (piece.extent / 2) ** 2 if share else 0.0
     return misfit(mean, share * piece.observations) + FREE * (1 - share) * piece.observations
 
