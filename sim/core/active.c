@@ -116,10 +116,11 @@ static int lay_out(Active *active, const System *system) {
         size += (size_t)(i - active->first[i]);
     }
     active->met[active->count] = meetings;
-    if (size > active->profile_capacity) {
+    if (size >= active->profile_capacity) { /* room for none is room too: nothing is added to a null pointer */
         free(active->lower);
-        active->lower = malloc(4 * size * sizeof *active->lower);
-        active->profile_capacity = active->lower ? 2 * size : 0;
+        size_t capacity = 2 * size + 1;
+        active->lower = malloc(2 * capacity * sizeof *active->lower);
+        active->profile_capacity = active->lower ? capacity : 0;
         if (!active->lower) return SIM_OUT_OF_MEMORY;
     }
     active->upper = active->lower + active->profile_capacity;
