@@ -103,22 +103,36 @@ double motion_fastest(const Motion *m) {
 MotionBound motion_bound(const Motion *m, double from, double to) {
     MotionBound bound = {.is_steady = m->degree <= 2};
     if (m->degree == 0) return bound;
-    double value[3], slope[3], curvature[3];
-    if (bound.is_steady) { /* the speed of a parabola is greatest at one of the ends */
-        State a = motion_state(m, from), b = motion_state(m, to);
-        bound.speed = fmax(vlength(a.v), vlength(b.v));
-        bound.spin = fabs(a.spin);
+    if (bound.is_steady) {
+        bound.spin = fabs(motion_state(m, from).spin);
         bound.steady = vec(m->v[0][1], m->v[1][1]);
-        bound.acceleration = vlength(bound.steady);
         return bound;
     }
-    for (int k = 0; k < 3; k++)
-        polynomial_bound(m->v[k], m->degree, (to - m->start) / m->span, &value[k], &slope[k], &curvature[k]);
-    bound.speed = vlength(vec(value[0], value[1]));
-    bound.spin = value[2];
-    bound.acceleration = vlength(vec(slope[0], slope[1])) / m->span;
-    bound.spin_acceleration = slope[2] / m->span;
-    bound.jerk = vlength(vec(curvature[0], curvature[1])) / (m->span * m->span);
-    bound.spin_jerk = curvature[2] / (m->span * m->span);
+    double slope, curvature;
+    polynomial_bound(m->v[2], m->degree, (to - m->start) / m->span, &bound.spin, &slope, &curvature);
+    bound.spin_acceleration = slope / m->span;
+    bound.spin_jerk = curvature / (m->span * m->span);
     return bound;
+}
+
+/* The polynomial's coefficients in y, where its argument is at + scale y: Horner's scheme again and again (Shaw and Traub 1974). */
+static void shift_polynomial(const double *c, int degree, double at, double scale, double *out) {
+    for (int k = 0; k <= degree; k++) out[k] = c[k];
+    for (int k = 0; k < degree; k++)
+        for (int i = degree - 1; i >= k; i--) out[i] += at * out[i + 1];
+    double power = 1;
+    for (int k = 0; k <= degree; k++, power *= scale) out[k] *= power;
+}
+
+RelativeBound motion_against(const Motion *a, const Motion *b, double from, double to) {
+    double value[2], slope[2], curvature[2], span = to - from;
+    for (int k = 0; k < 2; k++) {
+        double first[MOTION_DEGREE + 1] = {0}, second[MOTION_DEGREE + 1] = {0};
+        shift_polynomial(a->v[k], a->degree, (from - a->start) / a->span, span / a->span, first);
+        shift_polynomial(b->v[k], b->degree, (from - b->start) / b->span, span / b->span, second);
+        for (int i = 0; i <= MOTION_DEGREE; i++) first[i] -= second[i];
+        polynomial_bound(first, MOTION_DEGREE, 1, &value[k], &slope[k], &curvature[k]);
+    }
+    return (RelativeBound){vlength(vec(value[0], value[1])), vlength(vec(slope[0], slope[1])) / span,
+                           vlength(vec(curvature[0], curvature[1])) / (span * span)};
 }

@@ -29,8 +29,8 @@ typedef struct Motion {
 
 /* What a motion does at most from one time to another. */
 typedef struct MotionBound {
-    double speed, spin, acceleration, spin_acceleration, jerk, spin_jerk;
-    Vec steady; /* the acceleration, where it is constant; `acceleration` is then its length */
+    double spin, spin_acceleration, spin_jerk;
+    Vec steady; /* the acceleration, where it is constant */
     bool is_steady;
 } MotionBound;
 
@@ -62,5 +62,12 @@ bool course_apart(const Course *a, const Course *b, double time, double reach);
 /* No less than so near do two bodies' centres come in so long [m]; two that fall alike go straight past each other. */
 double course_nearest(const Course *a, const Course *b, double time);
 MotionBound motion_bound(const Motion *motion, double from, double to);
+
+/* What two bodies' centres do at most as one sees them from the other: nothing, where they go alike. */
+typedef struct RelativeBound {
+    double speed, acceleration, jerk;
+} RelativeBound;
+
+RelativeBound motion_against(const Motion *a, const Motion *b, double from, double to);
 
 #endif

@@ -32,22 +32,24 @@ static double whirl(const MotionBound *m) {
 static PairBound pair_bound(const Motion *ma, double ra, const Motion *mb, double rb, double apart, double from,
                             double to) {
     MotionBound a = motion_bound(ma, from, to), b = motion_bound(mb, from, to);
-    double relative = a.is_steady && b.is_steady ? vlength(vsub(a.steady, b.steady)) : a.acceleration + b.acceleration;
     double swing_a = a.spin * a.spin + a.spin_acceleration, swing_b = b.spin * b.spin + b.spin_acceleration;
-    double points = relative + ra * swing_a + rb * swing_b;
-    double centres = a.speed + b.speed;
+    RelativeBound centres = {0};
     if (a.is_steady && b.is_steady) { /* their velocity against each other is greatest at one of the ends */
-        Vec first = vsub(motion_state(ma, from).v, motion_state(mb, from).v);
-        Vec last = vmad(first, to - from, vsub(a.steady, b.steady));
-        centres = sqrt(fmax(vdot(first, first), vdot(last, last)));
+        Vec first = vsub(motion_state(ma, from).v, motion_state(mb, from).v), pull = vsub(a.steady, b.steady);
+        Vec last = vmad(first, to - from, pull);
+        centres.speed = sqrt(fmax(vdot(first, first), vdot(last, last)));
+        centres.acceleration = vlength(pull);
+    } else {
+        centres = motion_against(ma, mb, from, to);
     }
+    double points = centres.acceleration + ra * swing_a + rb * swing_b;
     PairBound bound = {.points = points};
-    bound.closing = centres + ra * a.spin + rb * b.spin;
+    bound.closing = centres.speed + ra * a.spin + rb * b.spin;
     apart += bound.closing * (to - from); /* |rho| at most */
     bound.passing = bound.closing + fmax(a.spin, b.spin) * apart;
     bound.steer_ab = points + 2 * b.spin * bound.closing + swing_b * apart;
     bound.steer_ba = points + 2 * a.spin * bound.closing + swing_a * apart;
-    bound.jerk = a.jerk + b.jerk + ra * whirl(&a) + rb * whirl(&b);
+    bound.jerk = centres.jerk + ra * whirl(&a) + rb * whirl(&b);
     bound.veer_ab = bound.jerk + 3 * b.spin * points + 3 * swing_b * bound.closing + apart * whirl(&b);
     bound.veer_ba = bound.jerk + 3 * a.spin * points + 3 * swing_a * bound.closing + apart * whirl(&a);
     return bound;
@@ -180,8 +182,8 @@ static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, con
         if (is_closed(s, &f)) continue;
         bool a_first = f.body_a == s->a.body;
         Gap g = feature_gap(&f, a_first ? pa : pb, a_first ? pb : pa);
-        double steer =
-            f.is_side ? (a_first ? bound->steer_ab : bound->steer_ba) : fmin(bound->steer_ab, bound->steer_ba);
+        /* the distance of two points curves up by what they move across it: only their acceleration takes from it */
+        double steer = !f.is_side ? bound->points : a_first ? bound->steer_ab : bound->steer_ba;
         double own = feature_step(s->slack, &g, bound, steer);
         bool parts = false; /* but slowly at first */
         bool slow = g.rate >= 0 || (own > 0 && g.rate >= -s->slack->speed);
