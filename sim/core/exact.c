@@ -13,6 +13,7 @@
 #define PAIRS_A_SECOND 16.0 /* pairs looked at that cost as much as a body in the crowd, a simulated second */
 #define ALL_PAIRS_OF 16 /* bodies: fewer are not sorted for the search */
 #define STEPS_OF_PAIR 32.0 /* of a search that cost as much again as looking at a pair at all */
+#define BOUNCE 0.1 /* of the tolerance: lower bounces are not followed */
 #define GLANCE 0.5 /* of a pair: what it costs to see that the two do not come near each other */
 #define PAIRS_OF_FEW 1e6 /* a few bodies are worth this many pairs among them: exactness is what is asked for */
 
@@ -22,7 +23,9 @@ int exact_create(Exact *e, World *world, Recorder *recorder, double tolerance) {
      * sets the least. */
     double gap = fmin(0.05 * tolerance, 1e-3 * world->thinnest);
     Slack slack = {.gap = fmax(gap, 1e-10 * world->size), .root = 1e-14 * world->size};
+    slack.bounce = BOUNCE * tolerance;
     slack.speed = slack.gap;
+    slack.unsure = fmax(tolerance / VELOCITY_TIME, slack.speed);
     slack.deep = fmax(4 * slack.gap, 0.05 * world->thinnest);
     *e =
         (Exact){.world = world, .recorder = recorder, .slack = slack, .tolerance = tolerance, .horizon = FIRST_HORIZON};
@@ -209,6 +212,21 @@ static int load_part(Exact *e, const Island *island, double time) {
     }
     system_find_joints(&e->part);
     return SIM_OK;
+}
+
+/* Take the drift of an island's motion off the velocities of the group's members in it: what slips or parts by no more than that
+ * does not. */
+int island_settle(Exact *e, const Island *island, double time) {
+    int status = load_part(e, island, time);
+    e->smooth.relax = island->pace.relax;
+    if (status == SIM_OK) status = smooth_prepare(&e->smooth, &e->part);
+    if (status == SIM_OK) status = project_velocities(&e->smooth, &e->part);
+    for (int32_t i = 0; i < e->part.count && status == SIM_OK; i++) {
+        int32_t place = e->group.place_of[e->part.member[i]];
+        e->group.state[place].v = e->part.state[i].v;
+        e->group.state[place].spin = e->part.state[i].spin;
+    }
+    return status;
 }
 
 /* A member's kinetic and potential energy. */

@@ -116,6 +116,7 @@ void group_send_to_crowd(Exact *exact, double time);
 
 /* The next stretch of an island's smooth motion. */
 int island_advance(Exact *exact, int32_t island, double from);
+int island_settle(Exact *exact, const Island *island, double time);
 void island_dissolve(Exact *exact, int32_t island);
 
 #endif

@@ -10,7 +10,6 @@
 #define MOST_CONTACTS 10       /* of a group in motion: beyond that the crowd is cheaper */
 #define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
 #define MOST_RETURNS 4         /* times that lifts are held at an event and the rest looked at again */
-#define BOUNCE 0.1             /* bounces lower than this part of the tolerance are not followed */
 
 /* ---------------------------------------------------------------- who is in it */
 
@@ -110,21 +109,6 @@ static int find_pulls(Exact *e, double time) {
     return SIM_OK;
 }
 
-/* Whether a contact that parts at this speed is back before it has gone far enough to be seen.  Where nothing pulls a pair
- * together it does not come back, and every speed counts. */
-static bool is_low(const Exact *e, double pull, double speed) {
-    return pull > 0 && speed * speed < 2 * pull * BOUNCE * e->tolerance;
-}
-
-/* Bounces that come ever faster end where they would: one too low to be seen is none. */
-static void settle_low_bounces(Exact *e) {
-    System *g = &e->group;
-    for (int32_t k = 0; k < g->contact_count; k++) {
-        Contact *c = &g->contact[k];
-        if (is_low(e, c->pull, c->elasticity * row_speed(contact_row(g, k), g->state))) c->elasticity = 0;
-    }
-}
-
 /* The strongest pull on a contact's bodies: when they turn from one contact to another, that is what brings them back. */
 static double pull_about(const System *g, const Contact *of) {
     double most = 0;
@@ -158,7 +142,7 @@ static int settle_low_lifts(Exact *e) {
     for (int32_t k = 0; k < g->contact_count; k++) {
         Contact *c = &g->contact[k];
         double speed = row_speed(contact_row(g, k), g->state);
-        c->low = speed > e->slack.speed && is_low(e, pull_about(g, c), speed);
+        c->low = speed > e->slack.speed && is_low(&e->slack, pull_about(g, c), speed);
         any = any || c->low;
     }
     return any ? hold_low(e) : SIM_OK;
@@ -172,7 +156,8 @@ static int settle_returns(Exact *e, bool *any) {
     for (int32_t k = 0; k < g->contact_count; k++) {
         Contact *c = &g->contact[k];
         double speed = row_speed(contact_row(g, k), g->state);
-        c->low = speed > e->slack.speed && is_low(e, -row_acceleration(contact_row(g, k), e->acceleration), speed);
+        double back = -row_acceleration(contact_row(g, k), e->acceleration);
+        c->low = speed > e->slack.speed && is_low(&e->slack, back, speed);
         *any = *any || c->low;
     }
     return *any ? hold_low(e) : SIM_OK;
@@ -401,8 +386,12 @@ int group_reform(Exact *e, double time) {
     System *g = &e->group;
     e->world->profile.events += 1;
     int status = change_note_before(e);
-    for (int32_t i = 0; i < g->count; i++)
-        if (e->track[g->member[i]].island >= 0) island_dissolve(e, e->track[g->member[i]].island);
+    for (int32_t i = 0; i < g->count && status == SIM_OK; i++) {
+        int32_t island = e->track[g->member[i]].island;
+        if (island < 0) continue;
+        status = island_settle(e, &e->island[island], time);
+        island_dissolve(e, island);
+    }
     bool crowded = e->world->body[g->member[0]].mode == MODE_CROWD || any_too_deep(e);
     if (status == SIM_OK && !crowded) status = find_contacts(e);
     if (status != SIM_OK) return status;
@@ -415,7 +404,6 @@ int group_reform(Exact *e, double time) {
     system_find_joints(g);
     double start = seconds_now(), energy = kinetic_energy(e);
     status = find_pulls(e, time);
-    settle_low_bounces(e);
     if (status == SIM_OK) status = resolve(e, time);
     if (status == SIM_OK) status = settle_low_lifts(e);
     if (status == SIM_OK) status = resolve(e, time);

@@ -16,6 +16,8 @@
 
 #include "lcp.h"
 
+#define MOST_SHARED 10 /* contacts: of more, loads are not shared out */
+
 void contact_solver_destroy(ContactSolver *solver) {
     free(solver->block);
     free(solver->index);
@@ -152,6 +154,30 @@ static void complement(Problem *p) {
     }
 }
 
+/* Whether a contact may be idle only because others carry its load: it neither presses nor opens. */
+static bool is_shared(const Problem *p) {
+    for (int32_t c = 0; c < p->contacts; c++) {
+        int32_t i = p->at[c];
+        const double *M = p->M + (size_t)i * (size_t)p->unknowns;
+        double opens = p->q[i], size = fabs(opens);
+        for (int32_t j = 0; j < p->unknowns; j++) {
+            opens += M[j] * p->z[j];
+            size = fmax(size, fabs(M[j] * p->z[j]));
+        }
+        if (p->z[i] == 0 && size > 0 && fabs(opens) <= 1e-9 * size) return true;
+    }
+    return false;
+}
+
+/* Solve it.  Which wheel of three on one axle carries the load is not said by rigid bodies; that each carries its share is what a
+ * spring under each would say.  That matters to what moves, which has few contacts. */
+static bool solve_problem(const Problem *p) {
+    if (!lcp_solve(p->unknowns, p->M, p->q, p->z, p->work, p->basis)) return false;
+    if (p->contacts > MOST_SHARED || !is_shared(p)) return true;
+    return lcp_share(p->unknowns, p->M, p->q, p->z, p->work, p->basis) ||
+           lcp_solve(p->unknowns, p->M, p->q, p->z, p->work, p->basis);
+}
+
 /* Solve for the forces of all rows of the system, so that J M^-1 F' force + wanted obeys the contacts' laws; what is
  * less than `nothing` is rounding. */
 static int solve(ContactSolver *solver, System *system, const bool *takes_part, double *wanted, double nothing,
@@ -163,7 +189,7 @@ static int solve(ContactSolver *solver, System *system, const bool *takes_part, 
     if (status != SIM_OK) return status;
     reduce(&p, wanted);
     complement(&p);
-    if (!lcp_solve(p.unknowns, p.M, p.q, p.z, p.work, p.basis)) return SIM_BAD_INPUT;
+    if (!solve_problem(&p)) return SIM_BAD_INPUT;
     memset(force, 0, (size_t)system->row_count * sizeof *force);
     for (int32_t c = 0; c < p.contacts; c++) {
         const double *z = &p.z[p.at[c]];
@@ -220,12 +246,18 @@ static int reserve_rounds(ContactSolver *solver, const System *s, Rounds *r) {
     return SIM_OK;
 }
 
+/* Whether a contact that approaches at this speed bounces.  Bounces that come ever faster end where they would: one too low
+ * to be seen is none. */
+static bool bounces_at(const Contact *c, double speed, const Slack *slack) {
+    return c->elasticity > 0 && speed < -slack->speed && !is_low(slack, c->pull, c->elasticity * speed);
+}
+
 /* The contacts that take part exchange impulses at once, with their restitution or without. */
 static int exchange(ContactSolver *solver, System *s, Rounds *r, bool elastic, const Slack *slack) {
     for (int32_t i = 0; i < s->row_count; i++) r->wanted[i] = row_speed(&s->row[i], s->state);
     for (int32_t k = 0; k < s->contact_count; k++) {
         double *u = &r->wanted[2 * (s->joint_count + k)];
-        if (elastic && *u < -slack->speed) *u *= 1 + s->contact[k].elasticity;
+        if (elastic && bounces_at(&s->contact[k], *u, slack)) *u *= 1 + s->contact[k].elasticity;
     }
     int status = solve(solver, s, r->takes_part, r->wanted, 1e-6 * slack->speed, r->force);
     if (status != SIM_OK) return status;
@@ -266,20 +298,22 @@ static int exchange_without_gain(ContactSolver *solver, System *s, Rounds *r, co
 }
 
 /* Which contacts act in this round, and whether any does.  While something bounces, only those that approach: an impulse
- * runs down a line of touching balls from pair to pair, as a cradle's does.  Where nothing bounces all act together,
- * since passing on from pair to pair would never end. */
+ * runs down a line of touching balls from pair to pair, as a cradle's does, and those that may approach by error alone wait
+ * for it.  Where nothing bounces all act together, since passing on from pair to pair would never end. */
 static bool choose_round(const System *s, Rounds *r, const Slack *slack, bool together, bool *bounces) {
-    bool any = false;
+    double fastest = 0;
+    for (int32_t k = 0; k < s->contact_count; k++) fastest = fmax(fastest, -row_speed(contact_row(s, k), s->state));
+    double least = fastest > slack->unsure ? slack->unsure : slack->speed;
     *bounces = false;
     for (int32_t k = 0; k < s->contact_count; k++) {
-        r->takes_part[k] = row_speed(contact_row(s, k), s->state) < -slack->speed;
-        any = any || r->takes_part[k];
-        *bounces = *bounces || (r->takes_part[k] && s->contact[k].elasticity > 0);
+        double speed = row_speed(contact_row(s, k), s->state);
+        r->takes_part[k] = speed < -least;
+        *bounces = *bounces || (r->takes_part[k] && bounces_at(&s->contact[k], speed, slack));
     }
     if (together) *bounces = false;
     if (!*bounces)
         for (int32_t k = 0; k < s->contact_count; k++) r->takes_part[k] = true;
-    return any;
+    return fastest > slack->speed;
 }
 
 int resolve_impacts(ContactSolver *solver, System *s, const Slack *slack, Vec *impulse, int32_t *count) {
@@ -349,7 +383,7 @@ int find_modes(ContactSolver *solver, System *s, const Slack *slack, double *acc
     int status = system_place(s);
     for (int32_t k = 0; k < s->contact_count; k++) {
         double slip = row_speed(contact_row(s, k) + 1, s->state);
-        s->contact[k].slide = fabs(slip) <= slack->speed ? 0 : slip > 0 ? 1 : -1;
+        s->contact[k].slide = fabs(slip) <= slack->unsure ? 0 : slip > 0 ? 1 : -1; /* the forces tell the rest */
     }
     if (status == SIM_OK) status = system_place(s);
     if (status == SIM_OK) status = reserve_rounds(solver, s, &r);
@@ -362,16 +396,17 @@ int find_modes(ContactSolver *solver, System *s, const Slack *slack, double *acc
     status = solve(solver, s, r.takes_part, r.wanted, 1e-4 * slack->speed, r.force);
     if (status != SIM_OK) return status;
     accelerations(s, r.force, acceleration);
-    double gravity = vlength(s->world->gravity), none = 1e-10 * (gravity > 0 ? gravity : 1);
     for (int32_t k = 0; k < s->contact_count; k++) {
         Contact *c = &s->contact[k];
         const double *f = &r.force[2 * (s->joint_count + k)];
         c->active = f[0] > 0;
         c->force = f[0];
         c->along_force = f[1];
-        double slipping = row_acceleration(contact_row(s, k) + 1, acceleration);
-        if (c->slide == 0 && c->friction > 0 && fabs(f[1]) >= c->friction * f[0] * (1 - 1e-9) && fabs(slipping) > none)
-            c->slide = slipping > 0 ? 1 : -1;
+        const Row *along = contact_row(s, k) + 1;
+        double slipping = fabs(row_acceleration(along, acceleration));
+        double none = 1e-12 * (f[0] * row_coupling(s, along, along) + 1e-3 * vlength(s->world->gravity));
+        if (c->slide == 0 && c->friction > 0 && fabs(f[1]) >= c->friction * f[0] * (1 - 1e-9) && slipping > none)
+            c->slide = f[1] < 0 ? 1 : -1; /* against friction, also where it hardly slips yet */
     }
     return SIM_OK;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define TINY 1e-11
+#define LEAST_SOFTNESS 1e-8
 
 typedef struct Tableau {
     int32_t n, width; /* columns: w (n), z (n), the artificial variable, the right side */
@@ -104,6 +105,18 @@ static bool is_solution(int32_t n, const double *M, const double *q, const doubl
     return true;
 }
 
+/* A little softness gives a size to pivots that are rounding alone, and shares what may be shared; solving again about the
+ * solution found takes its effect on the rest away (proximal point method). */
+static bool solve_softened(Tableau *tab, const double *M, const double *q, double soften, double *z) {
+    bool found = true;
+    for (int32_t i = 0; i < tab->n; i++) z[i] = 0;
+    for (int pass = 0; pass < 2 && found; pass++) {
+        fill(tab, M, q, soften, z);
+        found = follow(tab, z);
+    }
+    return found && is_solution(tab->n, M, q, z, 10 * soften);
+}
+
 bool lcp_solve(int32_t n, const double *M, const double *q, double *z, double *work, int32_t *basis) {
     bool trivial = true;
     for (int32_t i = 0; i < n; i++) {
@@ -114,16 +127,12 @@ bool lcp_solve(int32_t n, const double *M, const double *q, double *z, double *w
     Tableau tab = {n, 2 * n + 2, work, basis};
     fill(&tab, M, q, 0, z);
     if (follow(&tab, z) && is_solution(n, M, q, z, 1e-9)) return true;
-    /* Redundant contacts can leave pivots that are rounding alone.  A little softness gives them a size; solving again
-     * about the solution found takes its effect away (proximal point method). */
-    for (double soften = 1e-8; soften < 1e-5; soften *= 10) {
-        for (int32_t i = 0; i < n; i++) z[i] = 0;
-        bool found = true;
-        for (int pass = 0; pass < 2 && found; pass++) {
-            fill(&tab, M, q, soften, z);
-            found = follow(&tab, z);
-        }
-        if (found && is_solution(n, M, q, z, 10 * soften)) return true;
-    }
+    for (double soften = LEAST_SOFTNESS; soften < 1e-5; soften *= 10) /* redundant contacts */
+        if (solve_softened(&tab, M, q, soften, z)) return true;
     return false;
+}
+
+bool lcp_share(int32_t n, const double *M, const double *q, double *z, double *work, int32_t *basis) {
+    Tableau tab = {n, 2 * n + 2, work, basis};
+    return solve_softened(&tab, M, q, LEAST_SOFTNESS, z);
 }

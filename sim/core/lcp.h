@@ -13,4 +13,7 @@ static inline size_t lcp_work(int32_t n) { return (size_t)n * (2 * (size_t)n + 2
  * basis: n ints of work space. */
 bool lcp_solve(int32_t n, const double *M, const double *q, double *z, double *work, int32_t *basis);
 
+/* The same, but of more than one solution that of least size, about: it has no more zeros than need be. */
+bool lcp_share(int32_t n, const double *M, const double *q, double *z, double *work, int32_t *basis);
+
 #endif

@@ -14,7 +14,6 @@
 #define FARTHEST 2.0       /* times the last step: beyond that, its start says little of a step */
 #define LAST_TERM 0.3      /* of the tolerance: how large an interpolation's last term may be */
 #define LONGEST 2.0       /* a step [s]: within it, the ends of contacts' modes are looked for at the stages */
-#define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
 
 int smooth_create(Smooth *s, const World *world, double tolerance, Slack slack) {
     *s = (Smooth){.tolerance = tolerance, .slack = slack};

@@ -4,14 +4,24 @@
 
 #include "feature.h"
 
+#define VELOCITY_TIME 1.0 /* an error in velocity counts as what it moves a body by in this time [s] */
+
 /* Lengths and speeds below which two things are the same, set once for a run from its tolerance. */
 typedef struct Slack {
     double gap;   /* a gap this small counts as closed [m] */
     double speed; /* a speed this small counts as none [m/s] */
     double root;  /* a gap is solved for to this [m]: rounding */
+    double unsure; /* bodies that ought to go alike may approach so fast by error alone [m/s] */
+    double bounce; /* bounces lower than this are not followed [m] */
     double
         deep; /* overlaps up to this are contacts that were pushed in; what is deeper is for the crowd to let out [m] */
 } Slack;
+
+/* Whether a contact that parts at this speed is back before it has gone far enough to be seen.  Where nothing pulls a pair
+ * together it does not come back, and every speed counts. */
+static inline bool is_low(const Slack *slack, double pull, double speed) {
+    return pull > 0 && speed * speed < 2 * pull * slack->bounce;
+}
 
 typedef struct Touching {
     Feature feature;

@@ -72,7 +72,10 @@ def is_convex(body: Any) -> bool:
 
 
 def deepest_pair(scene: Scene, run: Any) -> tuple[float, str]:
-    """The deepest overlap of any two convex bodies in every fourth sample, and what they are."""
+    """The deepest overlap of any two convex bodies in every fourth sample and still in the next, and what they are.
+
+    What a blow squeezes for a moment comes out; what has lost sight of each other stays.
+    """
     joined = {frozenset(joint.bodies) for joint in scene.joints}
     convex = [k for k, body in enumerate(scene.bodies) if is_convex(body)]
     reach = [
@@ -82,16 +85,20 @@ def deepest_pair(scene: Scene, run: Any) -> tuple[float, str]:
         for b in scene.bodies
     ]
     worst, who = -math.inf, ""
+    before: dict[tuple[int, int], float] = {}
     for t in range(0, len(run.times), 4):
         at = run.positions[t]
+        now: dict[tuple[int, int], float] = {}
         for n, i in enumerate(convex):
             for j in convex[:n]:
                 a, b = scene.bodies[i], scene.bodies[j]
                 if i < 4 or math.dist(at[i], at[j]) > reach[i] + reach[j] or {a.id, b.id} in joined:
                     continue
-                found = depth(placed(a, at[i], run.angles[t, i]), placed(b, at[j], run.angles[t, j]))
+                now[i, j] = depth(placed(a, at[i], run.angles[t, i]), placed(b, at[j], run.angles[t, j]))
+                found = min(now[i, j], before.get((i, j), -math.inf))
                 if found > worst:
                     worst, who = found, f"{a.id} and {b.id} at {run.times[t]:.2f}"
+        before = now
     return worst, who
 
 
