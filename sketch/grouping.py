@@ -20,10 +20,8 @@ MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length
 MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
 MOST_OPEN = 5  # and of those with wide gaps, which are many in a tangle
 WIDE = 0.1  # of a chain's ink
-RING = (
-    0.2,
-    0.2,
-)  # of its length, what the ends of a ring are apart; of its extent, half of its thickness: what is thinner is a rod
+# of its length, what the ends of a ring are apart; of its extent, half of its thickness: what is thinner is a rod
+RING = (0.2, 0.2)
 PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing

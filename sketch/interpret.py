@@ -284,8 +284,8 @@ def _either(circle: Drawn, taken: str, other: str) -> str:
 
 
 def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
-    """Fix the body that an X lies over: of several the one that most of its bars' ends lie in, and of those the one
-    drawn last; of none the one that its bars reach."""
+    """Fix the body that an X lies over: of several the one drawn last that holds half of its bars' ends at least; of
+    none the one that its bars reach."""
     at = reading.outline.mean(axis=0)
     reach = float(np.hypot(*np.ptp(reading.outline, axis=0))) / 2
     near = [(d.depth(at), d) for d in bodies.near(at, reach) if d.reading.solid]
@@ -296,13 +296,12 @@ def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
     if not over:
         notes.append(f"the X of {reading.named} is over no body: it anchors nothing")
         return
-    ends = reading.outline
-    within = {d: sum(d.depth(end) < 0 for end in ends) for d in over}
-    held = [d for d in over if within[d] == max(within.values())]
-    top = max(held, key=lambda d: d.reading.strokes[-1])
+    # a rod that runs under an X, and holds none of it, is not what the X was drawn on
+    held = [d for d in over if 2 * sum(d.depth(end) < 0 for end in reading.outline) >= len(reading.outline)]
+    top = max(held or over, key=lambda d: d.reading.strokes[-1])
     top.body.anchored = True
     if len(over) > 1:
-        why = "drawn last" if len(held) > 1 else "in which it was drawn"
+        why = "in which it was drawn" if len(held) == 1 else "drawn last"
         notes.append(f"the X of {reading.named} is over {_ids(over)}: it anchors {top.body.id}, {why}")
 
 

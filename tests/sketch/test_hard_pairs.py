@@ -165,7 +165,16 @@ def test_an_x_over_two_bodies_anchors_the_last_drawn(hand, rng) -> None:
     first, last = outline(box(300, 300, 300, 160), hand, rng), outline(box(420, 330, 280, 140), hand, rng)
     scene = read(first, last, cross((370, 310), 40, hand, rng)).scene
     assert [b.anchored for b in scene.bodies] == [False, True]
-    assert any("b1 and b2" in note and "b2" in note for note in scene.notes)
+    assert any("b1 and b2: it anchors b2, drawn last" in note for note in scene.notes)
+    over = read(first, last, cross((310, 325), 90, hand, rng)).scene  # half of it sticks out of the last
+    assert [b.anchored for b in over.bodies] == [False, True]
+
+
+@hands
+def test_an_x_in_a_body_that_a_rod_crosses_anchors_the_body(hand, rng) -> None:
+    plate, rod = outline(box(400, 300, 300, 200), hand, rng), line([(350, 300), (750, 300)], hand, rng)
+    scene = read(plate, rod, cross((400, 300), 50, hand, rng)).scene
+    assert [b.anchored for b in scene.bodies] == [True, False]
 
 
 @hands
