@@ -20,14 +20,14 @@ static void follow(const double *xy, int first, int step, int n, double reach, C
     int points = 0, stride;
     for (int i = 1; i < n && along < reach; i++, points++) {
         const double *p = xy + 2 * (first + step * i), *q = p - 2 * step;
-        along += hypot(p[0] - q[0], p[1] - q[1]);
+        along += length(p[0] - q[0], p[1] - q[1]);
     }
     stride = 1 + (points - 1) / STEPS;
     c->count = 0;
     along = 0;
     for (int i = 0; i <= points; i++) {
         const double *p = xy + 2 * (first + step * i), *q = p - 2 * step;
-        if (i) along += hypot(p[0] - q[0], p[1] - q[1]);
+        if (i) along += length(p[0] - q[0], p[1] - q[1]);
         if (i % stride) continue;
         c->at[c->count] = first + step * i;
         c->along[c->count++] = along;

@@ -11,7 +11,7 @@ static void thicken(const double *line, double pen, double *outline) {
     for (int i = 0; i <= COURSE; i++) {
         double normal[2] = {0, 0}, mitre[2];
         if (i < COURSE) {
-            double dx = line[2 * i + 2] - line[2 * i], dy = line[2 * i + 3] - line[2 * i + 1], l = hypot(dx, dy);
+            double dx = line[2 * i + 2] - line[2 * i], dy = line[2 * i + 3] - line[2 * i + 1], l = length(dx, dy);
             l = l > 1e-9 ? l : 1e-9;
             normal[0] = -(dy / l);
             normal[1] = dx / l;
@@ -36,10 +36,10 @@ static void thicken(const double *line, double pen, double *outline) {
  * Out: line: (COURSE + 1, 2) in equal steps along it. Returns whether it nowhere crosses itself. */
 INK_API int32_t ink_course(const double *xy, int32_t n, double pen, double *line) {
     double total = 0, done = 0, outline[4 * (COURSE + 1)];
-    for (int j = 1; j < n; j++) total += hypot(xy[2 * j] - xy[2 * j - 2], xy[2 * j + 1] - xy[2 * j - 1]);
+    for (int j = 1; j < n; j++) total += length(xy[2 * j] - xy[2 * j - 2], xy[2 * j + 1] - xy[2 * j - 1]);
     for (int j = 1, k = 0; j < n; j++) {
         const double *a = xy + 2 * j - 2, *b = xy + 2 * j;
-        double l = hypot(b[0] - a[0], b[1] - a[1]), next = done + l;
+        double l = length(b[0] - a[0], b[1] - a[1]), next = done + l;
         for (; k < COURSE && k * (total / COURSE) < next; k++)
             for (int e = 0; e < 2; e++)
                 line[2 * k + e] = (b[e] - a[e]) / (next - done) * (k * (total / COURSE) - done) + a[e];

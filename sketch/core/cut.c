@@ -25,7 +25,7 @@ typedef struct {
     int count, from[CLOSURES], to[CLOSURES]; /* where the way comes back to itself */
 } Way;
 
-static double apart(const Way *w, int i, int j) { return hypot(w->x[j] - w->x[i], w->y[j] - w->y[i]); }
+static double apart(const Way *w, int i, int j) { return length(w->x[j] - w->x[i], w->y[j] - w->y[i]); }
 
 /* What samples i .. j cost as a loop, in parts; infinite if they are none. */
 static double loop_cost(const Way *w, int i, int j) {

@@ -60,7 +60,8 @@ double sample_parts(const double *xy, const int32_t *part_end, int parts, double
 INK_API int32_t ink_is_simple(const double *v, int32_t n);
 INK_API double ink_depth(double x, double y, const double *outline, int32_t n);
 
-/* Of a vector whose squares neither vanish nor overflow: in an outline's own frame. hypot takes five times as long. */
+/* Of a vector whose squares neither vanish nor overflow: within ink, or in an outline's own frame. hypot takes five times as
+ * long. */
 static inline double length(double x, double y) { return sqrt(x * x + y * y); }
 
 /* Of ink taken as a course of segments: its length, and the sums over it of x, y and of xx, xy, yy. */
@@ -85,7 +86,7 @@ double nearest_rectangle(const double *corners, const double to[4], double *box)
 /* Whether two pieces share no ink: rivals[from[i] .. from[i + 1]] are those that share some with piece i; from may be null. */
 int ink_apart(const int32_t *rivals, const int32_t *from, int i, int j);
 
-int again_end(const double *p, int first, int step, int n, double length, double extent);
+int again_end(const double *p, int first, int step, int n, double total, double extent);
 
 double segment_distance2(double px, double py, const double a[2], const double b[2]);
 

@@ -10,7 +10,7 @@ static void distances(const double *points, int64_t count, const double *place, 
     *nearest = INFINITY;
     *farthest = 0;
     for (int64_t k = 0; k < count; k++) {
-        double d = hypot(points[2 * k] - place[0], points[2 * k + 1] - place[1]);
+        double d = length(points[2 * k] - place[0], points[2 * k + 1] - place[1]);
         if (d < *nearest) *nearest = d;
         if (d > *farthest) *farthest = d;
     }

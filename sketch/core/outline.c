@@ -25,7 +25,7 @@ static Frame normal_frame(const double *xy, int n, double least_axis) {
         for (int i = 0, j = n - 1; i < n; j = i++) {
             double dx = xy[2 * i] - xy[2 * j], dy = xy[2 * i + 1] - xy[2 * j + 1];
             double cx = 0.5 * (xy[2 * i] + xy[2 * j]) - m[0], cy = 0.5 * (xy[2 * i + 1] + xy[2 * j + 1]) - m[1];
-            add_segment(&t, hypot(dx, dy), dx, dy, cx, cy);
+            add_segment(&t, length(dx, dy), dx, dy, cx, cy);
         }
         w = t.length > 0 ? t.length : 1;
         if (pass == 0) {

@@ -18,12 +18,12 @@ double sample_parts(const double *xy, const int32_t *part_end, int parts, double
     double total = 0;
     for (int p = 0, i = 0; p < parts; i = part_end[p++])
         for (int j = i + 1; j < part_end[p]; j++)
-            total += hypot(xy[2 * j] - xy[2 * j - 2], xy[2 * j + 1] - xy[2 * j - 1]);
+            total += length(xy[2 * j] - xy[2 * j - 2], xy[2 * j + 1] - xy[2 * j - 1]);
     double done = 0;
     int k = 0;
     for (int p = 0, i = 0; p < parts && k < n; i = part_end[p++])
         for (int j = i + 1; j < part_end[p] && k < n; j++) {
-            double dx = xy[2 * j] - xy[2 * j - 2], dy = xy[2 * j + 1] - xy[2 * j - 1], l = hypot(dx, dy);
+            double dx = xy[2 * j] - xy[2 * j - 2], dy = xy[2 * j + 1] - xy[2 * j - 1], l = length(dx, dy);
             for (double at; k < n && (at = (k + 0.5) * total / n) <= done + l && l > 0; k++) {
                 double t = (at - done) / l;
                 x[k] = xy[2 * j - 2] + t * dx;

@@ -15,35 +15,33 @@ enum {
 /* Where the little turn back ends that a pen leaves where it goes down: the last turn of over 60 degrees within `reach` of
  * the start; 0 for none. Steps run from `first` by `step` (1 or -1) over n points. */
 static int hook_end(const double *p, int first, int step, int n, double reach) {
-    double along = 0;
+    double along = 0, ahead = 0;
     int best = 0;
-    for (int i = 1; i + 1 < n; i++) {
+    for (int i = 1, j = 1; i + 1 < n; i++) { /* j: as far ahead as one may look back */
         const double *q = p + 2 * (first + step * i), *before = q - 2 * step, *start = p + 2 * first;
-        along += hypot(q[0] - before[0], q[1] - before[1]);
+        double w = length(q[0] - before[0], q[1] - before[1]);
+        along += w;
         if (along > reach) break;
-        int j = i;
-        double ahead = 0, ax = 0, ay = 0;
-        while (j + 1 < n && ahead < reach) { /* as far ahead as one may look back */
+        if (i > 1) ahead -= w;
+        for (; j + 1 < n && ahead < reach; j++) {
             const double *b = p + 2 * (first + step * (j + 1)), *a = b - 2 * step;
-            ahead += hypot(b[0] - a[0], b[1] - a[1]);
-            ax = b[0] - q[0];
-            ay = b[1] - q[1];
-            j++;
+            ahead += length(b[0] - a[0], b[1] - a[1]);
         }
-        double bx = q[0] - start[0], by = q[1] - start[1];
-        if (ax * bx + ay * by < 0.5 * hypot(ax, ay) * hypot(bx, by)) best = i;
+        const double *far = p + 2 * (first + step * j);
+        double ax = far[0] - q[0], ay = far[1] - q[1], bx = q[0] - start[0], by = q[1] - start[1];
+        if (ax * bx + ay * by < 0.5 * length(ax, ay) * length(bx, by)) best = i;
     }
     return best;
 }
 
-static void moments(const double *p, int n, double *length, double mean[2], double s[3]) {
+static void moments(const double *p, int n, double *total, double mean[2], double s[3]) {
     Moments t = {0};
     for (int i = 1; i < n; i++) {
         double dx = p[2 * i] - p[2 * i - 2], dy = p[2 * i + 1] - p[2 * i - 1];
         double cx = 0.5 * (p[2 * i] + p[2 * i - 2]) - p[0], cy = 0.5 * (p[2 * i + 1] + p[2 * i - 1]) - p[1];
-        add_segment(&t, hypot(dx, dy), dx, dy, cx, cy);
+        add_segment(&t, length(dx, dy), dx, dy, cx, cy);
     }
-    *length = t.length;
+    *total = t.length;
     double w = t.length > 0 ? 1 / t.length : 0, mx = t.x[0] * w, my = t.x[1] * w;
     s[0] = t.xx[0] * w - mx * mx;
     s[1] = t.xx[1] * w - mx * my;
