@@ -1,5 +1,6 @@
 /* The ink on a page: lines that are too thin for a threshold, and how far ink reaches. */
 #include <stdint.h>
+#include <stdlib.h>
 
 #include "rows.h"
 
@@ -37,6 +38,98 @@ EXPORT void ink_crests(const uint8_t *darkness, const uint8_t *mask, int32_t wid
             if (*p > faintest && !mask[row + x]) line[row + x] = (uint8_t)is_crest(p, width, reach, crest, beside);
         }
     }
+}
+
+typedef struct {
+    const uint8_t *mask, *line;
+    int32_t offset[8];
+    int32_t *label; /* of the stretches of ink that lie beside lines, those that were looked at: from 1 */
+    int32_t *queue, count;
+} Beside;
+
+/* Whether a pixel is ink beside a line. */
+static int is_beside(const Beside *b, int32_t at) {
+    int touched = 0;
+    for (int k = 0; k < 8; k++) touched |= b->line[at + b->offset[k]];
+    return touched && b->mask[at];
+}
+
+/* The stretch of ink beside lines that a pixel is in; 0 where it is in none. */
+static int32_t stretch_at(Beside *b, int32_t at) {
+    if (b->label[at] || !is_beside(b, at)) return b->label[at];
+    int32_t listed = 0;
+    b->queue[listed++] = at;
+    b->label[at] = ++b->count;
+    for (int32_t next = 0; next < listed; next++) {
+        for (int k = 0; k < 8; k++) {
+            const int32_t q = b->queue[next] + b->offset[k];
+            if (!b->label[q] && is_beside(b, q)) {
+                b->label[q] = b->count;
+                b->queue[listed++] = q;
+            }
+        }
+    }
+    return b->count;
+}
+
+/* Whether a piece of a line, `count` pixels, lies between two stretches of ink. */
+static int links(Beside *b, const int32_t *pixels, int32_t count) {
+    int32_t first = 0;
+    for (int32_t i = 0; i < count; i++) {
+        for (int k = 0; k < 8; k++) {
+            const int32_t stretch = stretch_at(b, pixels[i] + b->offset[k]);
+            if (first && stretch && stretch != first) return 1;
+            first = stretch ? stretch : first;
+        }
+    }
+    return 0;
+}
+
+/* Whether some pixels lie less than `longest` apart [pixels]. */
+static int is_short(const int32_t *pixels, int32_t count, int32_t width, double longest) {
+    int32_t left = width, right = 0, top = pixels[0] / width, bottom = top;
+    for (int32_t i = 0; i < count; i++) {
+        const int32_t x = pixels[i] % width, y = pixels[i] / width;
+        left = x < left ? x : left;
+        right = x > right ? x : right;
+        top = y < top ? y : top;
+        bottom = y > bottom ? y : bottom;
+    }
+    const double wide = right - left, high = bottom - top;
+    return wide * wide + high * high < longest * longest;
+}
+
+/* Add to the ink of `mask` the pieces of `line` that are at least `longest` long or link two stretches of ink: what is
+ * shorter and leads nowhere is a bump of an edge.  size: of the line, which leaves out the picture's two outermost
+ * rows and columns.  Returns 0, or -1 where memory is short. */
+EXPORT int32_t ink_link(const uint8_t *line, int32_t width, int32_t height, int32_t size, double longest,
+                        uint8_t *mask) {
+    Beside b = {mask, line, {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1}, NULL, NULL, 0};
+    int32_t status = -1, dropped = 0;
+    int32_t *pixels = malloc(((size_t)size + 1) * 3 * sizeof *pixels);
+    b.label = calloc((size_t)width * height, sizeof *b.label); /* hardly any page of it is touched */
+    b.queue = malloc(((size_t)size * 8 + 1) * sizeof *b.queue);
+    if (!pixels || !b.label || !b.queue) goto out;
+    int32_t *start = pixels + size, *gone = start + size + 1;
+    const int32_t found = ink_pieces(line, width, height, pixels, start);
+    if (found < 0) goto out;
+    for (int32_t n = 0; n < found; n++) {
+        const int32_t *piece = pixels + start[n], count = start[n + 1] - start[n];
+        if (is_short(piece, count, width, longest) && !links(&b, piece, count)) gone[dropped++] = n;
+    }
+    for (int32_t n = 0, d = 0; n < found; n++) {
+        if (d < dropped && gone[d] == n) {
+            d++;
+            continue;
+        }
+        for (int32_t i = start[n]; i < start[n + 1]; i++) mask[pixels[i]] = 1;
+    }
+    status = 0;
+out:
+    free(pixels);
+    free(b.label);
+    free(b.queue);
+    return status;
 }
 
 /* Distance of each pixel of ink to the paper, into `distance`, which is 0.  The outermost rows and columns count as

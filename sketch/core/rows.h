@@ -21,4 +21,7 @@ static inline int32_t next_ink(const uint8_t *row, int32_t x, int32_t end) {
     return end;
 }
 
+/* See trace_pieces.c. */
+int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, int32_t *pixels, int32_t *start);
+
 #endif

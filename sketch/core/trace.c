@@ -6,6 +6,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "rows.h"
+
 #define EXPORT __attribute__((visibility("default")))
 
 enum { FREE_END = -1, CLOSED = -2 };
@@ -104,8 +106,9 @@ EXPORT int32_t ink_trace(const uint8_t *mask, int32_t width, int32_t height, int
     g.node = calloc(size, sizeof *g.node);
     if (!pixels || !g.node) goto out;
     int32_t *stack = pixels + count + 1;
-    for (size_t i = 0; i < size; i++)
-        if (mask[i] && found < count) pixels[found++] = (int32_t)i;
+    const int32_t end = width * height;
+    for (int32_t i = next_ink(mask, 0, end); i < end && found < count; i = next_ink(mask, i + 1, end))
+        pixels[found++] = i;
     for (int32_t i = 0; i < found; i++)
         if (!g.node[pixels[i]] && degree(&g, pixels[i]) >= 3) flood_node(&g, pixels[i], out.node_count++, stack);
     counts[2] = 0;

@@ -11,11 +11,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.library import library
+from sketch.library import address, library
 
-__all__ = ["Chains", "belt", "crests", "distances", "pieces", "thin", "trace"]
+__all__ = [
+    "Chains",
+    "belt",
+    "bend",
+    "course_length",
+    "crests",
+    "crisp_ink",
+    "darkness",
+    "distances",
+    "heading",
+    "link",
+    "off_course",
+    "pieces",
+    "thin",
+    "trace",
+]
+
+Points = NDArray[np.float64]
 
 _MASK = np.ctypeslib.ndpointer(np.uint8, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
+_PICTURE = np.ctypeslib.ndpointer(np.uint8, ndim=3, flags="C_CONTIGUOUS")
 _FLOATS = np.ctypeslib.ndpointer(np.float32, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
 _DOUBLES = np.ctypeslib.ndpointer(np.float64, ndim=1, flags=("C_CONTIGUOUS", "WRITEABLE"))
 RAYS = 48  # as in core/belt.c
@@ -28,6 +46,21 @@ def _library() -> ctypes.CDLL:
     int32, real = ctypes.c_int32, ctypes.c_float
     core.ink_crests.argtypes = [_MASK, _MASK, int32, int32, int32, int32, real, real, _MASK]
     core.ink_crests.restype = None
+    core.ink_crisp.argtypes = [_MASK, _MASK, ctypes.c_int64, ctypes.c_uint8, _MASK, _MASK]
+    core.ink_crisp.restype = None
+    core.ink_darkness.argtypes = [_PICTURE, _MASK, int32, int32, int32, int32, _MASK]
+    core.ink_darkness.restype = int32
+    core.ink_link.argtypes = [_MASK, int32, int32, int32, ctypes.c_double, _MASK]
+    core.ink_link.restype = int32
+    pointer, double = ctypes.c_void_p, ctypes.c_double
+    core.ink_bend.argtypes = [pointer, int32, pointer, double, double]
+    core.ink_bend.restype = double
+    core.ink_heading.argtypes = [pointer, int32, pointer, double, double, pointer]
+    core.ink_heading.restype = None
+    core.ink_length.argtypes = [pointer, int32]
+    core.ink_length.restype = double
+    core.ink_off_course.argtypes = [pointer, pointer, int32, pointer, int32, pointer]
+    core.ink_off_course.restype = None
     core.ink_belt.argtypes = [_MASK, int32, int32, _DOUBLES, ctypes.c_double, _DOUBLES]
     core.ink_belt.restype = int32
     core.ink_distance.argtypes = [_MASK, int32, int32, _FLOATS]
@@ -57,6 +90,42 @@ def belt(
     return float(out[0]), out[1:3], float(out[3]), np.concatenate([points, points[:1]])
 
 
+def bend(points: Points, start: Points, sight: float, smooth: float) -> float:
+    """The curvature of a line, (n, 2) [pixels], from `start` on, over twice `sight`, leftwards positive [1/pixel].
+
+    It is 0 where too little of the line is there to tell, or where it turns a corner: is off an arc by more than
+    `smooth` of the sight.
+    """
+    line, at = np.ascontiguousarray(points), np.ascontiguousarray(start)
+    return float(_library().ink_bend(address(line), len(line), address(at), sight, smooth))
+
+
+def course_length(points: Points) -> float:
+    """The length of a course, (n, 2) [pixels]."""
+    line = np.ascontiguousarray(points)
+    return float(_library().ink_length(address(line), len(line)))
+
+
+def heading(points: Points, centre: Points, reach: float, sight: float) -> tuple[Points, Points]:
+    """Where a branch gets clear of a junction's ink, and its direction there as a unit vector.
+
+    Thinning bends a branch within `reach` of the junction's centre, so it is looked at beyond, for the
+    length of `sight`; a branch shorter than that from half of its length on.
+    """
+    line, at, out = np.ascontiguousarray(points), np.ascontiguousarray(centre), np.empty(4)
+    _library().ink_heading(address(line), len(line), address(at), reach, sight, address(out))
+    return out[:2], out[2:]
+
+
+def off_course(stretches: list[Points], corners: Points) -> Points:
+    """The root mean square distance of each of some stretches of ink, (n, 2), from a course [pixels]."""
+    ink, line = np.concatenate(stretches), np.ascontiguousarray(corners)
+    ends = np.cumsum([len(stretch) for stretch in stretches], dtype=np.int32)
+    off = np.empty(len(stretches))
+    _library().ink_off_course(address(ink), address(ends), len(ends), address(line), len(line), address(off))
+    return off
+
+
 def crests(
     darkness: NDArray[Any], mask: NDArray[Any], faintest: float, reach: int, crest: float, beside: float
 ) -> NDArray[np.uint8]:
@@ -71,12 +140,48 @@ def crests(
     return line
 
 
-def distances(mask: NDArray[Any]) -> NDArray[np.float32]:
+def crisp_ink(
+    dark: NDArray[Any], darkest: NDArray[Any], around: NDArray[Any], floor: int
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """1 where it is crisper than half of the darkest, and darker than `floor`, shape (h, w); and how crisp it is.
+
+    A pixel is as crisp as it is dark, and half of what it is darker than the mean around it again. `around` is that
+    mean, and is used up.
+    """
+    mask = np.empty_like(dark)
+    _library().ink_crisp(dark, darkest, dark.size, floor, around, mask)
+    return mask, around
+
+
+def darkness(
+    picture: NDArray[np.uint8], light: NDArray[np.uint8], *, dimmest: int, negative: bool
+) -> NDArray[np.uint8]:
+    """How much darker than the light on it each pixel of a BGR picture is, 0 to 255 of that light, shape (h, w).
+
+    light: at each pixel, shape (h, w); below `dimmest` it counts as that.  negative: of the picture's negative.
+    """
+    dark = np.empty_like(light)
+    height, width = light.shape
+    picture = np.ascontiguousarray(picture)
+    if _library().ink_darkness(picture, light, width, height, negative, dimmest, dark):
+        raise MemoryError("no memory for a row of the picture")
+    return dark
+
+
+def link(line: NDArray[np.uint8], longest: float, mask: NDArray[Any]) -> None:
+    """Add to a mask of ink the pieces of a line, as `crests` finds it, that are at least `longest` [pixels] or lie
+    between two stretches of ink."""
+    height, width = line.shape
+    if _library().ink_link(line, width, height, int(np.count_nonzero(line)), longest, mask):
+        raise MemoryError("no memory for the pieces of thin lines")
+
+
+def distances(mask: NDArray[Any], known: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
     """How far each pixel of ink is from the paper, 0 on paper [pixels], shape (h, w).
 
-    The outermost rows and columns count as paper.
+    The outermost rows and columns count as paper.  known: of a mask that has no other ink, to be set.
     """
-    distance = np.zeros(mask.shape, np.float32)
+    distance = np.zeros(mask.shape, np.float32) if known is None else known
     height, width = mask.shape
     _library().ink_distance(mask, width, height, distance)
     return distance

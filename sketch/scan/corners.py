@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.graph import RING, Graph
+from sketch.scan.quantiles import median
 
 __all__ = ["begin_at_corner", "sharpen_corners"]
 
@@ -29,7 +30,7 @@ def sharpen_corners(graph: Graph, distance: NDArray[Any], pen: float) -> None:
     """
     for edge in graph.edges:
         x, y = np.round(edge.points).astype(int).T
-        wide = max(pen, 2 * float(np.median(distance[y, x])))  # a slow pen draws wider
+        wide = max(pen, 2 * median(distance[y, x]))  # a slow pen draws wider
         cut, side = round(CUT * wide), max(round(SIDE * wide), 3)
         closed = edge.ends == RING
         points = edge.points[:-1] if closed else edge.points

@@ -6,10 +6,13 @@ everywhere tells them from a drawing, most of whose paper is bare.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from sketch.scan.quantiles import percentile
 
 __all__ = ["smoothed_grain"]
 
@@ -44,11 +47,16 @@ def _grain(picture: NDArray[Any], smoother: NDArray[Any] | None) -> float:
     step = max(height * width // SAMPLES, 1) | 1  # odd: a pattern's period is even
     if width < BLOCK + 2 or height < 4 * step:
         return 0.0
-    rows = picture[::step].min(axis=2).astype(np.int32)
+    rows = _darkest(picture[::step]).astype(np.int32)
     if smoother is None:
         off = (rows[:, 2:] - 2 * rows[:, 1:-1] + rows[:, :-2]).astype(np.float64) / 6**0.5
     else:
-        off = (rows - smoother[::step].min(axis=2)).astype(np.float64)
+        off = (rows - _darkest(smoother[::step])).astype(np.float64)
     high, wide = len(off) // 4 * 4, off.shape[1] // BLOCK * BLOCK
     energy = (off[:high, :wide] ** 2).reshape(high // 4, 4, -1, BLOCK).mean(axis=(1, 3))
-    return float(np.percentile(energy, BARE) ** 0.5)
+    return math.sqrt(percentile(energy, BARE))
+
+
+def _darkest(rows: NDArray[Any]) -> NDArray[Any]:
+    """The darkest channel of each pixel."""
+    return np.asarray(np.minimum(np.minimum(rows[..., 0], rows[..., 1]), rows[..., 2]))

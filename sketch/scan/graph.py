@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import Chains
+from sketch.scan.binding import Chains, course_length, heading
+from sketch.scan.quantiles import median
 
-__all__ = ["RING", "SIGHT", "Edge", "End", "Graph", "Ink", "bend", "build_graph", "heading"]
+__all__ = ["RING", "SIGHT", "Edge", "End", "Graph", "Ink", "build_graph"]
 
 Points = NDArray[np.float64]
 RING = (-2, -2)  # the ends of an edge that closes on itself
 SIGHT = 4.0  # pen widths along a branch that show where it is going
-SMOOTH = 0.04  # of the sight: how far an arc may be off a parabola
 OVERSHOOT = 2.5  # pen widths that a line may go on past its corner
 DOUBLE = 1.3  # pen widths: wider ink is that of two lines
 MERGED = 10.0  # pen widths that two lines from one tip may be one
@@ -38,7 +38,7 @@ class Edge:
 
     @property
     def length(self) -> float:
-        return float(np.hypot(*np.diff(self.points, axis=0).T).sum())
+        return course_length(self.points)
 
 
 @dataclass(eq=False)
@@ -123,46 +123,6 @@ def _drop_twigs(graph: Graph) -> None:
     _join_passed_nodes(graph, {})
 
 
-def heading(points: Points, centre: Points, reach: float, sight: float) -> tuple[Points, Points]:
-    """Where a branch gets clear of a junction's ink, and its direction there as a unit vector.
-
-    Thinning bends a branch within `reach` of the junction's centre, so it is looked at beyond, for the
-    length of `sight`; a branch shorter than that from half of its length on.
-    """
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    clear = np.flatnonzero(np.hypot(*(points - centre).T) >= reach)
-    first = min(along[clear[0]] if len(clear) else np.inf, 0.5 * along[-1])
-    window = points[(along >= first) & (along <= first + sight)]
-    if len(window) < 2:
-        window = points[[-2, -1]] if len(points) > 1 else np.repeat(points, 2, axis=0)
-    centred = window - window.mean(axis=0)
-    direction = np.linalg.svd(centred, full_matrices=False)[2][0] if np.any(centred) else np.array([1.0, 0.0])
-    if direction @ (window[-1] - window[0]) < 0:
-        direction = -direction
-    return window[0], direction
-
-
-def bend(points: Points, start: Points, sight: float) -> float:
-    """The curvature of a branch from `start` on, over twice `sight`, leftwards positive [1/pixel].
-
-    It is 0 where too little of the branch is there to tell, or where it turns a corner.
-    """
-    first = int(np.argmin(np.hypot(*(points - start).T)))
-    along = np.cumsum(np.hypot(*np.diff(points[first:], axis=0).T))
-    window = points[first : first + 1 + int(np.searchsorted(along, 2 * sight))] - start
-    far = window[-1]
-    reach = float(np.hypot(*far))
-    if len(window) < 5 or reach < sight:
-        return 0.0
-    u = far / reach
-    x, y = window @ u, window @ np.array([-u[1], u[0]])
-    # y = k x (x - reach) / 2 is the parabola through both ends
-    shape = x * (x - reach) / 2
-    curvature = float(shape @ y / (shape @ shape))
-    off = y - curvature * shape
-    return curvature if np.sqrt(np.mean(off * off)) < SMOOTH * sight else 0.0
-
-
 def _drop_overshoots(graph: Graph, pen: float) -> None:
     """Drop the short ends that stick out where two long lines meet in a corner, and set the corner right.
 
@@ -209,7 +169,7 @@ def _turn_hairpins(graph: Graph, distance: NDArray[Any], pen: float) -> None:
         line = graph.outward(tip)
         long = graph.edges[tip[0]].length
         x, y = np.round(line).astype(int).T
-        double = 2 * float(np.median(distance[y, x])) > DOUBLE * pen
+        double = 2 * median(distance[y, x]) > DOUBLE * pen
         shortest = min(graph.edges[e].length for e, _ in sides)
         if sides[0][0] == sides[1][0] or long > (MERGED * pen if double else min(OVERSHOOT * pen, shortest)):
             continue

@@ -16,7 +16,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import SIGHT, End, Graph, bend, heading
+from sketch.scan.binding import bend, heading
+from sketch.scan.graph import SIGHT, End, Graph
 
 __all__ = ["LONELY", "Branch", "Junction", "Pairs", "find_junctions", "turn_cost"]
 
@@ -28,6 +29,7 @@ MERGED = 12.0  # pen widths: the longest bridge that is tried as the ink of two 
 BRIDGE_COST = 0.06  # for each pen width of a bridge that two lines share
 UNEVEN = 0.5  # weight of the difference in bend between two branches
 ROUND_BEND = 1.0  # [rad] beyond which bends are not compared
+SMOOTH = 0.04  # of the sight: how far an arc may be off a parabola
 LONELY = 1.0  # the cost of an end at a junction, as the square of a turn in radians
 LOOP = 0.3  # of the length of a line that comes back: what shows where it is going
 KNOT = 8  # more branches than this are paired greedily
@@ -102,7 +104,7 @@ def find_junctions(graph: Graph, pen: float) -> list[Junction]:
             if _is_loop(graph.edges[end[0]].ends, crossing):  # its other end shows where it comes from
                 sight = min(sight, max(LOOP * graph.edges[end[0]].length - reach, pen))
             start, outward = heading(points, centre, reach, sight)
-            curvature = bend(points, start, SIGHT * pen)
+            curvature = bend(points, start, SIGHT * pen, SMOOTH)
             branches[k].append(Branch(end, start, outward, curvature * SIGHT * pen, centre))
     junctions = _share_bridges(graph, branches, crossing, pen)
     for e in short:

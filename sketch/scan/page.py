@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import crests, pieces
+from sketch.scan.binding import crests, crisp_ink, darkness, distances, link, pieces
+from sketch.scan.quantiles import percentile
 from sketch.scan.ruling import FEWEST, drop_ruling
 from sketch.scan.table import TABLE, closed, darkest_channel, find_sheet
 
@@ -16,7 +17,6 @@ __all__ = [
     "Page",
     "drop_specks",
     "fill_grain",
-    "fill_holes",
     "holes",
     "hollow_fills",
     "ink_mask",
@@ -32,7 +32,6 @@ DARK_BOARD = 110  # of 255
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
-CRISP = 0.5  # of what a pixel is darker than its surroundings, added to it before it is told from paper
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
 STAIN = 0.006  # of the picture's size, to either side: what is wider is a stain or filled
@@ -76,14 +75,14 @@ def read_page(picture: Image) -> Page:
     """
     import cv2
 
-    grey = darkest_channel(picture)
-    height, width = grey.shape
+    height, width = shape = picture.shape[:2]
     reduced = max(round((width * height / LIGHT_PIXELS) ** 0.5), 1)
     colours = _reduced(picture, reduced)
-    if _is_blackboard(darkest_channel(colours)):
-        grey = darkest_channel(255 - picture)
-        colours = 255 - colours
     small = darkest_channel(colours)
+    negative = _is_blackboard(small)
+    if negative:
+        colours = 255 - colours
+        small = darkest_channel(colours)
     light, edge = closed(small, WIDEST_LINE), None
     paper, around = find_sheet(colours)
     if paper is not None:
@@ -91,18 +90,18 @@ def read_page(picture: Image) -> Page:
         light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
     # where light changes at an edge its side is known to a small pixel only: taken as on the dark side
     light = cv2.blur(cv2.erode(light, np.ones((3, 3), np.uint8)), (3, 3))
-    light = _enlarged(_less_stains(light, small, reduced), reduced, grey.shape, cv2.INTER_LINEAR)
-    darkness = cv2.divide(cv2.subtract(light, grey), np.maximum(light, np.uint8(DIMMEST)), scale=255.0)
+    light = _enlarged(_less_stains(light, small, reduced), reduced, shape, cv2.INTER_LINEAR)
+    dark = darkness(picture, light, dimmest=DIMMEST, negative=negative)
     if paper is not None:
         edge = cv2.dilate(255 - paper, np.ones((5, 5), np.uint8))
-        edge = _enlarged(edge, reduced, grey.shape, cv2.INTER_NEAREST)
-        paper = _enlarged(paper, reduced, grey.shape, cv2.INTER_NEAREST)
-        darkness = cv2.min(darkness, paper)
+        edge = _enlarged(edge, reduced, shape, cv2.INTER_NEAREST)
+        paper = _enlarged(paper, reduced, shape, cv2.INTER_NEAREST)
+        dark = np.asarray(cv2.min(dark, paper), np.uint8)
     # a sheet may end so near the picture's edge that no table is seen beyond
     rim = MARGIN * reduced
-    for strip in (darkness[:rim], darkness[-rim:], darkness[:, :rim], darkness[:, -rim:]):
+    for strip in (dark[:rim], dark[-rim:], dark[:, :rim], dark[:, -rim:]):
         strip[...] = 0
-    return Page(darkness, _noise(darkness, paper, reduced), edge)
+    return Page(dark, _noise(dark, paper, reduced), edge)
 
 
 def _reduced(picture: Image, by: int) -> Image:
@@ -140,7 +139,7 @@ def _less_stains(light: Image, small: Image, reduced: int) -> Image:
     square = np.ones((3, 3), np.uint8)
     line = 2 * max(round(STAIN * small.size**0.5), 2) + 1
     wide = cv2.morphologyEx(cv2.subtract(light, small), cv2.MORPH_OPEN, np.ones((line, line), np.uint8))
-    dark = (wide > LEAST_CONTRAST * (light / 255.0)).astype(np.uint8)
+    dark = (wide * np.uint16(255) > LEAST_CONTRAST * light.astype(np.uint16)).view(np.uint8)
     if not dark.any():
         return light
     count, labels = cv2.connectedComponents(dark)
@@ -166,7 +165,7 @@ def _is_blackboard(small: Image) -> bool:
     kernel = np.ones((5, 5), np.uint8)
     bright = cv2.morphologyEx(small, cv2.MORPH_TOPHAT, kernel)
     dark = cv2.morphologyEx(small, cv2.MORPH_BLACKHAT, kernel)
-    return bool(np.percentile(bright, 99.5) > 1.5 * np.percentile(dark, 99.5))
+    return percentile(bright, 99.5) > 1.5 * percentile(dark, 99.5)
 
 
 def _noise(darkness: Image, paper: Image | None, step: int) -> float:
@@ -191,14 +190,13 @@ def ink_mask(page: Page, reach: int) -> Image:
     import cv2
 
     floor = min(max(LEAST_CONTRAST, 5 * page.noise), 254)
-    darkness = page.darkness
+    dark = page.darkness
     if page.noise > GRAINY:
-        darkness = cv2.GaussianBlur(darkness, (3, 3), 0)
+        dark = np.asarray(cv2.GaussianBlur(dark, (3, 3), 0))
     near = (2 * reach + 1, 2 * reach + 1)
-    half = cv2.dilate(darkness, np.ones(near, np.uint8)) // 2
+    darkest, mean = np.asarray(cv2.dilate(dark, np.ones(near, np.uint8))), np.asarray(cv2.blur(dark, near))
     # blurred ink makes the paper that it encloses grey: there it takes more to be ink
-    crisp = cv2.addWeighted(darkness, 1 + CRISP, cv2.blur(darkness, near), -CRISP, 0)
-    mask = np.asarray((crisp > half) & (darkness > np.uint8(floor)), np.uint8)
+    mask, crisp = crisp_ink(dark, darkest, mean, int(floor))
     size = (mask.shape[0] * mask.shape[1]) ** 0.5
     found = _measure(mask, page)
     notable = (found.span >= NOTABLE * size) & ~found.at_edge
@@ -207,10 +205,12 @@ def ink_mask(page: Page, reach: int) -> Image:
     if not len(notable):
         return np.zeros_like(mask)
     full = found.strength[notable].max()
-    mask |= crisp > max(floor, 0.75 * full)
-    _link_thin_lines(mask, darkness, max(floor, FAINT * full), reach)
+    mask |= (crisp > np.uint8(max(floor, 0.75 * full))).view(np.uint8)
+    # beside darker ink a thin line is less than half as dark as the darkest around, as the blurred edge of that ink
+    # is; but from a line darkness falls to both sides, and along an edge to one
+    link(crests(dark, mask, max(floor, FAINT * full), reach, CREST, BESIDE), LEAST_LINK, mask)
     found = _measure(mask, page)
-    if _may_be_ruled(found, mask.shape) and drop_ruling(mask, darkness):
+    if _may_be_ruled(found, mask.shape) and drop_ruling(mask, dark):
         found = _measure(mask, page)
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     held = found.at_edge & (found.span < FINGER_MARK * size)
@@ -226,37 +226,16 @@ def _may_be_ruled(found: _Pieces, shape: tuple[int, ...]) -> bool:
     return bool(long.sum(axis=0).max(initial=0) >= FEWEST or all_over.all(axis=1).any())
 
 
-def _link_thin_lines(mask: Image, darkness: Image, faintest: float, reach: int) -> None:
-    """Add to the ink, in place, what is darker than `faintest` and a line of its own.
+def drop_specks(mask: Image, distance: NDArray[Any], pen: float) -> int:
+    """Drop the pieces, in place, that are too small for anything drawn; returns how many there were.
 
-    Beside darker ink a thin line is less than half as dark as the darkest around, as the blurred edge of that
-    ink is; but from a line darkness falls to both sides, and along an edge to one.
+    distance: each ink pixel's distance to the paper, shape (h, w), likewise.
     """
-    line = crests(darkness, mask, faintest, reach, CREST, BESIDE)
-    found = _measure(line, None)
-    mask |= found.without(line, (found.span < LEAST_LINK) & (_touched(found, mask) < 2))
-
-
-def _touched(found: _Pieces, mask: Image) -> NDArray[np.int64]:
-    """How many stretches of a mask each of the pieces touches that lie beside it."""
-    width = mask.shape[1]
-    around = np.array([1, width + 1, width, width - 1, -1, -width - 1, -width, -width + 1])
-    piece = np.zeros(mask.size, np.int32)
-    piece[found.pixels] = np.repeat(np.arange(1, len(found.area) + 1), found.area)
-    beside = np.zeros_like(mask)
-    beside.ravel()[(found.pixels[:, None] + around).ravel()] = 1
-    stretches = _measure(beside & mask, None)
-    ours = piece[stretches.pixels[:, None] + around].max(axis=1)
-    stretch = np.repeat(np.arange(len(stretches.area)), stretches.area)
-    pairs = np.unique(np.stack([ours, stretch]), axis=1)
-    return np.bincount(pairs[0], minlength=len(found.area) + 1)[1:]
-
-
-def drop_specks(mask: Image, pen: float) -> int:
-    """Drop the pieces, in place, that are too small for anything drawn; returns how many there were."""
     found = _measure(mask, None)
     specks = found.span < SPECK * pen
-    mask[...] = found.without(mask, specks)
+    gone = found.pixels[np.repeat(specks, found.area)]
+    mask.ravel()[gone] = 0
+    distance.ravel()[gone] = 0
     return int(np.count_nonzero(specks))
 
 
@@ -321,41 +300,37 @@ def hollow_fills(mask: Image, distance: NDArray[Any], pen: float) -> bool:
     """
     import cv2
 
-    core = (distance > FILL * pen).astype(np.uint8)
-    if not core.any():
+    if distance.max(initial=0) <= FILL * pen:
         return False
+    core = (distance > FILL * pen).view(np.uint8)
     reach = 2 * round(FILL * pen) + 1
     fills = cv2.dilate(core, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach)))
     mask[(fills > 0) & (distance > pen)] = 0
     return True
 
 
-def fill_holes(mask: Image, largest: float) -> bool:
-    """Fill the holes, in place, that are smaller than `largest` [pixels]; returns whether there were any."""
-    import cv2
-
-    tiny = [way for way, area in holes(mask) if area < largest]
-    cv2.drawContours(mask, tiny, -1, 1, cv2.FILLED)
-    return bool(tiny)
-
-
-def fill_grain(mask: Image, pen: float) -> bool:
+def fill_grain(mask: Image, distance: NDArray[Any], pen: float) -> bool:
     """Fill the holes, in place, that the paper's grain leaves within a line; returns whether there were any.
 
-    A hole between lines has a line's width of ink around it, however small it is.
+    A hole between lines has a line's width of ink around it, however small it is.  distance: each ink pixel's distance
+    to the paper, shape (h, w), likewise.
     """
     import cv2
 
     small = [(way, area) for way, area in holes(mask) if area < GRAIN * pen * pen]
     if not small:
         return False
-    whole = mask.copy()
-    cv2.drawContours(whole, [way for way, _ in small], -1, 1, cv2.FILLED)
-    distance = cv2.distanceTransform(whole, cv2.DIST_L2, 3)
+    cv2.drawContours(mask, [way for way, _ in small], -1, 1, cv2.FILLED)
+    distances(mask, distance)
     within = [
-        way
+        area < PINHOLE * pen * pen or distance[way[:, 0, 1], way[:, 0, 0]].max() < WITHIN * pen
         for way, area in small
-        if area < PINHOLE * pen * pen or distance[way[:, 0, 1], way[:, 0, 0]].max() < WITHIN * pen
     ]
-    cv2.drawContours(mask, within, -1, 1, cv2.FILLED)
-    return bool(within)
+    between = [way for (way, _), grain in zip(small, within, strict=True) if not grain]
+    for way in between:
+        cv2.drawContours(mask, [way], -1, 0, cv2.FILLED)
+        cv2.drawContours(distance, [way], -1, 0, cv2.FILLED)
+        mask[way[:, 0, 1], way[:, 0, 0]] = 1
+    if between:
+        distances(mask, distance)
+    return any(within)

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import belt
+from sketch.scan.binding import belt, distances
 from sketch.scan.graph import Edge, Graph, Ink
-from sketch.scan.page import fill_holes, holes
+from sketch.scan.page import holes
 from sketch.scan.ways import Way
 
 __all__ = ["find_rings", "take_rings"]
@@ -39,11 +39,14 @@ def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[W
     """
     import cv2
 
-    mask = mask.copy()
-    if fill_holes(mask, CHINK * pen * pen):
-        distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    every = holes(mask)
+    chinks = [way for way, area in every if area < CHINK * pen * pen]
+    if chinks:
+        mask = cv2.drawContours(mask.copy(), chinks, -1, 1, cv2.FILLED)
+        distance = distances(mask)
+    large = [(way, area) for way, area in every if area >= CHINK * pen * pen]
     found = sorted(
-        (ring for seed in _seeds(mask, distance, pen) if (ring := belt(mask, seed, pen)) is not None),
+        (ring for seed in _seeds(large, distance, pen) if (ring := belt(mask, seed, pen)) is not None),
         key=lambda r: -r[0],
     )
     rings: list[Way] = []
@@ -55,12 +58,17 @@ def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[W
     return rings
 
 
-def _seeds(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[tuple[float, float, float]]:
-    """Where rings may be: middle and radius of small holes, alone and with the holes beside them."""
+def _seeds(
+    every: list[tuple[NDArray[Any], int]], distance: NDArray[Any], pen: float
+) -> list[tuple[float, float, float]]:
+    """Where rings may be: middle and radius of small holes, alone and with the holes beside them.
+
+    every: all holes in the ink, with their areas.
+    """
     import cv2
 
     largest = np.pi * (LARGEST * pen) ** 2
-    small = [(way, area) for way, area in holes(mask) if area < largest]
+    small = [(way, area) for way, area in every if area < largest]
     seeds = [_middle_and_radius(way, np.sqrt(max(area, 1) / np.pi) + pen / 2) for way, area in small]
     # a line across a ring makes two holes of one
     for (one, _), (other, _) in combinations(small, 2):
@@ -68,9 +76,8 @@ def _seeds(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[tuple
             (x, y), radius = cv2.minEnclosingCircle(np.concatenate([one, other]))
             seeds.append((x, y, radius + pen / 2 - 1))
     # ink much wider than a line is a hole that closed, wholly or in part
-    inside = np.zeros_like(mask)
+    inside = _grown((distance > 0.75 * pen).view(np.uint8), pen / 4)
     cv2.drawContours(inside, [way for way, _ in small], -1, 1, cv2.FILLED)
-    inside |= _grown((distance > 0.75 * pen).astype(np.uint8), pen / 4)
     for way in cv2.findContours(inside, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]:
         box = cv2.boundingRect(way)
         seeds.append(_middle_and_radius(way, np.sqrt((cv2.contourArea(way) + len(way)) / np.pi)))

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import pieces
+from sketch.scan.quantiles import median
 
 __all__ = ["drop_ruling"]
 
@@ -47,10 +48,10 @@ def _drop_family(mask: Image, darkness: Image) -> bool:
         return False
     family = [_refined(line, mask, thick) for line in _family(lines, mask.shape)]
     belts = [_belt(line, mask, darkness, thick) for line in family if line is not None]
-    levels = [np.median(belt.dark[belt.alone]) for belt in belts if belt.alone.any()]
+    levels = [median(belt.dark[belt.alone]) for belt in belts if belt.alone.any()]
     # all are printed alike: a line that is drawn along one of them, however far, is darker than the others
     for belt in belts:
-        printed = ~belt.crossed & (belt.dark <= DARKER * np.median(levels)) if levels else ~belt.crossed
+        printed = ~belt.crossed & (belt.dark <= DARKER * median(levels)) if levels else ~belt.crossed
         mask[belt.rows[:, printed], np.broadcast_to(belt.x, belt.rows.shape)[:, printed]] = 0
     return len(belts) >= FEWEST
 
@@ -77,7 +78,7 @@ def _long_lines(mask: Image) -> tuple[list[Line], float]:
         if np.std(y[own] - np.polyval(line, x[own])) < 0.5 * thick + 0.5:
             lines.append(line)
             thickness.append(thick)
-    return lines, float(np.median(thickness)) if thickness else 0.0
+    return lines, median(thickness) if thickness else 0.0
 
 
 def _family(lines: list[Line], shape: tuple[int, ...]) -> list[Line]:
@@ -89,7 +90,7 @@ def _family(lines: list[Line], shape: tuple[int, ...]) -> list[Line]:
     x = np.linspace(0, width - 1, 9)
     at = np.array(sorted((np.polyval(line, x) for line in lines), key=lambda y: float(y[4])))
     gaps = np.diff(at[:, 4])
-    step = float(np.median(gaps))
+    step = median(gaps)
     if step < 6:
         return []
     number = np.concatenate([[0], np.cumsum(np.maximum(np.round(gaps / step), 0))])

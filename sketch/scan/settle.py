@@ -21,6 +21,7 @@ from sketch.marks import RARE, RARE_ARROW
 from sketch.outlines import ARC, BOX, CORNER, ELLIPSE, FREEFORM, ROUND
 from sketch.pieces import Page
 from sketch.proposals import Proposals, proposing
+from sketch.scan.binding import off_course
 from sketch.scan.graph import Ink
 from sketch.scan.ways import SIDE, Way
 from sketch.scoring import PARAMETER, SLOPPY, STRANGE, TREMOR, Fitted
@@ -35,7 +36,6 @@ ROUNDS = 6  # of choosing, each with what the readings chosen before say about t
 OFF = 0.5
 MOSTLY = 0.1  # of a reading's ink: of two that have such a stretch in common neither stands around the other
 SAMPLES = 8  # or a few more points of a stretch that are compared with what was fitted
-TO_COMPLEX = np.array([1, 1j])
 # Nats for bodies that overlap, or have an X, and for the best arrow: what is around says more for them only once they
 # are chosen.
 AHEAD = 30.0
@@ -202,16 +202,7 @@ def _off(fitted: Fitted, stretches: list[Points]) -> Points:
     line = fitted.outline if fitted.figure is None else fitted.figure
     if fitted.closed or fitted.figure is not None:
         line = np.concatenate([line, line[:1]])
-    counts = [len(points) for points in stretches]
-    z = np.concatenate(stretches) @ TO_COMPLEX
-    corners = line @ TO_COMPLEX
-    side = corners[1:] - corners[:-1]
-    side[side == 0] = 1e-9
-    across = (z[:, None] - corners[:-1]) / side  # each side lies from 0 to 1
-    off = np.abs(across - np.clip(across.real, 0, 1)) * np.abs(side)
-    square = off.min(axis=1) ** 2
-    starts = np.cumsum([0, *counts[:-1]])
-    return np.asarray(np.sqrt(np.add.reduceat(square, starts) / counts))
+    return off_course(stretches, line)
 
 
 def _rivals(ink: list[Set[int]]) -> list[set[int]]:

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.scan.quantiles import median, percentile
+
 __all__ = ["TABLE", "closed", "darkest_channel", "find_sheet"]
 
 Image = NDArray[Any]  # uint8
@@ -53,7 +55,7 @@ def find_sheet(colours: Image) -> tuple[Image | None, NDArray[Any]]:
     framed = _framed(colours)
     if framed is not None:
         sheet, *parts = framed
-        white = whiteness >= TINGE * np.median(whiteness[sheet])
+        white = whiteness >= TINGE * median(whiteness[sheet])
         around = _continued(bright, sheet.astype(np.float32))
         for part in parts:
             around = _shaded(around, bright, part.astype(np.uint8))
@@ -71,7 +73,7 @@ def find_sheet(colours: Image) -> tuple[Image | None, NDArray[Any]]:
         near = cv2.dilate(shade, np.ones((EDGES, EDGES), np.uint8)) > 0
         inner[near & (cv2.dilate(weight, np.ones((EDGES, EDGES), np.uint8)) > 0)] = 1
     lit = bright >= TABLE * around
-    white = whiteness >= TINGE * np.median(whiteness[::FEWER, ::FEWER][weight[::FEWER, ::FEWER] > 0])
+    white = whiteness >= TINGE * median(whiteness[::FEWER, ::FEWER][weight[::FEWER, ::FEWER] > 0])
     return _whole(_brightest_region(inner & lit & white, bright)), around
 
 
@@ -109,7 +111,7 @@ def _framed(colours: Image) -> list[NDArray[np.bool_]] | None:
     light = closed(cv2.cvtColor(half, cv2.COLOR_BGR2GRAY), FINGER)
     square = np.ones((5, 5), np.uint8)
     step = 1 - cv2.erode(light, square) / np.maximum(cv2.dilate(light, square), 1).astype(np.float32)
-    rough = float(np.median(step[::FEWER, ::FEWER]))
+    rough = median(step[::FEWER, ::FEWER])
     edges = step > max(STEP, ROUGH * rough)
     sides = SIDES if rough else 1
     count, labels, stats, _ = cv2.connectedComponentsWithStats((~edges).astype(np.uint8), connectivity=4)
@@ -230,14 +232,14 @@ def _shadows(
     _, lines = cv2.connectedComponents(dark.astype(np.uint8), connectivity=8)
     on_sheet = np.bincount(lines[sheet & dark], minlength=int(lines.max()) + 1) >= ACROSS
     count, regions, stats, _ = cv2.connectedComponentsWithStats(inner, connectivity=4)
-    white = TINGE * np.median(whiteness[sheet])
+    white = TINGE * median(whiteness[sheet])
     off = _outside(sheet)  # what the sheet surrounds is filled, and no shadow
     found = []
     for k in range(1, count):
         if stats[k, cv2.CC_STAT_AREA] < NOTABLE * inner.size:
             continue
         region = regions == k
-        if not off[region].any() or np.median(whiteness[region]) < white:
+        if not off[region].any() or median(whiteness[region]) < white:
             continue
         there = np.bincount(lines[region & dark], minlength=len(on_sheet)) >= ACROSS
         if np.any(on_sheet[1:] & there[1:]):
@@ -248,7 +250,7 @@ def _shadows(
 def _inked(small: Image, bright: Image, sheet: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """What is as dark as the lines on a sheet are at least."""
     contrast = 1 - small / np.maximum(bright, 1).astype(np.float32)
-    return np.asarray(contrast > max(HALF * np.percentile(contrast[sheet], INKED), LINE))
+    return np.asarray(contrast > max(HALF * percentile(contrast[sheet], INKED), LINE))
 
 
 def _continued(values: NDArray[Any], weight: NDArray[np.float32]) -> NDArray[Any]:

@@ -17,6 +17,7 @@ from sketch.scan.grain import smoothed_grain
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.overlaps import overlapping
 from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
+from sketch.scan.quantiles import percentile
 from sketch.scan.ridge import centre_on_ink
 from sketch.scan.rings import find_rings, take_rings
 from sketch.scan.settle import settle
@@ -117,7 +118,7 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
 def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any]) -> float:
     """The width of the pen: the ink's area over its length, unless filled shapes are among it."""
     thickness = 2 * distance[skeleton > 0]
-    thin_ink, thick_ink = np.percentile(thickness, [20, 80])
+    thin_ink, thick_ink = percentile(thickness, 20), percentile(thickness, 80)
     if thick_ink > 2.5 * thin_ink:
         return float(min(thin_ink, WIDEST_PEN))
     pen = float(np.count_nonzero(mask)) / len(thickness)
@@ -130,11 +131,11 @@ def _strokes(seen: Traced) -> list[Points]:
     page, mask, skeleton, distance, pen = seen.page, seen.mask, seen.skeleton, seen.distance, seen.pen
     if page is None or mask is None or skeleton is None or distance is None:
         return []
-    seen.specks = drop_specks(mask, pen)
-    hollowed = hollow_fills(mask, distance, pen)
-    if fill_grain(mask, pen) or hollowed:
-        skeleton, size = thin(mask)
+    seen.specks = drop_specks(mask, distance, pen)
+    if hollowed := hollow_fills(mask, distance, pen):
         distance = distances(mask)
+    if fill_grain(mask, distance, pen) or hollowed:
+        skeleton, size = thin(mask)
     else:
         skeleton &= mask
         size = cv2.countNonZero(skeleton)

@@ -1,0 +1,91 @@
+"""The C that a page's ink is found and followed with, against its own definitions in numpy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sketch.scan.binding import bend, course_length, crisp_ink, darkness, distances, heading, link, off_course
+from sketch.scan.page import fill_grain
+
+
+@given(st.integers(0, 2**32), st.booleans())
+@settings(max_examples=30, deadline=None, derandomize=True)
+def test_darkness_is_a_share_of_the_light(seed: int, negative: bool) -> None:
+    rng = np.random.default_rng(seed)
+    height, width = rng.integers(1, 40, 2)
+    picture = rng.integers(0, 256, (height, width, 3), dtype=np.uint8)
+    light = rng.integers(0, 256, (height, width), dtype=np.uint8)
+    dark = darkness(picture, light, dimmest=24, negative=negative)
+    grey = (255 - picture if negative else picture).min(axis=2).astype(float)
+    share = np.maximum(light - grey, 0) / np.maximum(light, 24.0)
+    assert np.abs(dark - 255 * share).max() <= 0.5 + 1e-5
+
+
+def test_crisp_ink_is_darker_than_half_of_the_darkest() -> None:
+    rng = np.random.default_rng(3)
+    dark, darkest, mean = (rng.integers(0, 256, (37, 53), dtype=np.uint8) for _ in range(3))
+    mask, crisp = crisp_ink(dark, darkest, mean.copy(), 40)
+    expected = np.clip(np.rint(dark + 0.5 * (dark.astype(float) - mean)), 0, 255)
+    assert np.array_equal(crisp, expected)
+    assert np.array_equal(mask, (expected > darkest // 2) & (dark > 40))
+
+
+def test_a_thin_line_between_strokes_links_them_and_a_bump_is_left_out() -> None:
+    mask, line = np.zeros((40, 60), np.uint8), np.zeros((40, 60), np.uint8)
+    mask[10:13, 5:25] = mask[10:13, 27:50] = 1  # a stroke with a gap of two pixels,
+    line[11, 25:27] = 1
+    line[14, 10] = line[13, 11] = 1  # a bump beside it,
+    line[25, 10:30] = 1  # and a long thin line by itself
+    link(line, 3.0, mask)
+    assert mask[11, 25:27].all()
+    assert mask[25, 10:30].all()
+    assert not mask[13:15].any()
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.5, -1.8])
+def test_a_branch_is_looked_at_where_it_is_clear_of_the_junction(angle: float) -> None:
+    way = np.array([np.cos(angle), np.sin(angle)])
+    straight = way * np.arange(40)[:, None] + (30, 50)
+    bent = straight.copy()
+    bent[:6] += 3 * np.array([-way[1], way[0]])  # as thinning bends it
+    for points in (bent, np.concatenate([bent[::-1]])[::-1]):  # stored one way or the other
+        start, outward = heading(points, straight[0], 6.9, 12.0)
+        assert np.allclose(start, straight[7])
+        assert np.allclose(outward, way)
+    start, _ = heading(straight[:5], straight[0], 6.9, 12.0)
+    assert np.allclose(start, straight[2])  # a short one is looked at from half of its length on
+    assert np.allclose(heading(straight[:1], straight[0], 6.9, 12.0)[0], straight[0])
+
+
+def test_the_bend_of_an_arc_is_its_curvature() -> None:
+    t = np.linspace(0, 0.6, 61)
+    arc = 100 * np.stack([np.cos(t), np.sin(t)], axis=1)
+    assert bend(arc, arc[0], 12.0, 0.04) == pytest.approx(1 / 100, rel=0.02)
+    assert bend(arc[::-1], arc[-1], 12.0, 0.04) == pytest.approx(-1 / 100, rel=0.02)
+    corner = np.array([[k, 0.0] for k in range(12)] + [[12.0, k] for k in range(12)])
+    assert bend(corner, corner[0], 11.0, 0.04) == 0
+    assert bend(arc[:4], arc[0], 12.0, 0.04) == 0
+    assert course_length(arc) == pytest.approx(60, rel=1e-4)
+
+
+def test_stretches_are_off_a_course_by_their_distance() -> None:
+    square = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10], [0, 0]])
+    inside, beyond = np.array([[5.0, 2], [5, 1]]), np.array([[13.0, 14]])
+    assert np.allclose(off_course([inside, beyond], square), [np.sqrt(2.5), 5.0])
+
+
+def test_grain_is_filled_and_distances_stay_those_of_the_mask() -> None:
+    mask = np.zeros((60, 60), np.uint8)
+    mask[10:18, 5:55] = 1
+    mask[13:15, 20:22] = 0  # grain within a line
+    mask[28:47, 5:55] = 1
+    mask[35:40, 20:25] = 0  # a hole between lines
+    distance = distances(mask)
+    filled = mask.copy()
+    assert fill_grain(filled, distance, 6.0)
+    assert filled[10:18, 5:55].all()
+    assert not filled[35:40, 20:25].any()
+    assert np.array_equal(distance, distances(filled))
