@@ -45,7 +45,8 @@ class Phases:
         )
         stop = float(run.t[-1])
         here = (self.times >= self.now) & (self.times <= stop)
-        self._parts.append((here, run.sol(self.times[here]).T))
+        part = run.sol(self.times[here]).T if here.any() else np.empty((0, len(start)))  # it wants some
+        self._parts.append((here, part))
         self.now, self.done = stop, run.status == 0
         return np.asarray(run.y[:, -1])
 

@@ -9,6 +9,8 @@
 #define FIRST_STEP 0.05 /* tried by the integrator [s], of bodies that have taken none */
 #define MOST_CONTACTS 10       /* of a group in motion: beyond that the crowd is cheaper */
 #define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
+#define UNFELT 0.1             /* of the speed that is unsure: what friction may do too much or too little */
+#define CHATTER 40.0           /* events that a body had lately: contacts that take turns would go on to */
 #define MOST_RETURNS 4         /* times that lifts are held at an event and the rest looked at again */
 
 /* ---------------------------------------------------------------- who is in it */
@@ -121,6 +123,25 @@ static double pull_about(const System *g, const Contact *of) {
     return most;
 }
 
+/* The largest friction of the contacts that slide; none where events have come so fast for so long that they would go on. */
+static double find_rub(const Exact *e) {
+    const System *g = &e->group;
+    double most = 0;
+    for (int32_t k = 0; k < g->contact_count; k++) {
+        double slip = row_speed(contact_row(g, k) + 1, g->state);
+        if (fabs(slip) > e->slack.unsure) most = fmax(most, g->contact[k].friction);
+    }
+    for (int32_t i = 0; i < g->count; i++)
+        if (e->track[g->member[i]].bucket > CHATTER) return 0;
+    return most;
+}
+
+/* Whether a lift is too low to be seen.  What slides goes without friction while it is up, and is rubbed for it when it lands: to hold
+ * it down leaves out the one and gives the other, so that there a lift counts by its speed. */
+static bool is_low_lift(const Slack *slack, double pull, double speed, double rub) {
+    return speed > slack->speed && is_low(slack, pull, speed) && rub * speed <= UNFELT * slack->unsure;
+}
+
 /* Hold the contacts whose lift is too low to be seen, with those that touch. */
 static int hold_low(Exact *e) {
     System *g = &e->group;
@@ -138,11 +159,11 @@ static int hold_low(Exact *e) {
 /* A body that rocks from corner to corner, ever lower, comes to rest on both: a lift too low to be seen is none. */
 static int settle_low_lifts(Exact *e) {
     System *g = &e->group;
+    double rub = find_rub(e);
     bool any = false;
     for (int32_t k = 0; k < g->contact_count; k++) {
         Contact *c = &g->contact[k];
-        double speed = row_speed(contact_row(g, k), g->state);
-        c->low = speed > e->slack.speed && is_low(&e->slack, pull_about(g, c), speed);
+        c->low = is_low_lift(&e->slack, pull_about(g, c), row_speed(contact_row(g, k), g->state), rub);
         any = any || c->low;
     }
     return any ? hold_low(e) : SIM_OK;
@@ -152,12 +173,12 @@ static int settle_low_lifts(Exact *e) {
  * when it closes, would take turns for as long as the load is on them. Whether any was settled. */
 static int settle_returns(Exact *e, bool *any) {
     System *g = &e->group;
+    double rub = find_rub(e);
     *any = false;
     for (int32_t k = 0; k < g->contact_count; k++) {
         Contact *c = &g->contact[k];
-        double speed = row_speed(contact_row(g, k), g->state);
         double back = -row_acceleration(contact_row(g, k), e->acceleration);
-        c->low = speed > e->slack.speed && is_low(&e->slack, back, speed);
+        c->low = is_low_lift(&e->slack, back, row_speed(contact_row(g, k), g->state), rub);
         *any = *any || c->low;
     }
     return *any ? hold_low(e) : SIM_OK;
