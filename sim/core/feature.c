@@ -147,6 +147,14 @@ bool next_feature(FeatureWalk *w, Feature *out) {
     return false;
 }
 
+Feature feature_on_side(const World *world, int32_t shape_a, int32_t index_a, int32_t shape_b, int32_t index_b) {
+    Feature f;
+    FeatureWalk at = {
+        .world = world, .point_shape = shape_a, .other_shape = shape_b, .on_sides = true, .i = index_a, .j = index_b};
+    make_feature(&at, &f);
+    return f;
+}
+
 /* ---------------------------------------------------------------- their gaps */
 
 /* The velocity of a body's material point at arm r from its centre. */

@@ -68,6 +68,9 @@ typedef struct FeatureWalk {
 FeatureWalk walk_features(const World *world, int32_t shape_a, Pose at_a, int32_t shape_b, Pose at_b);
 bool next_feature(FeatureWalk *walk, Feature *out);
 
+/* The feature of a vertex of one shape and the side of another that starts at a vertex of it. */
+Feature feature_on_side(const World *world, int32_t shape_a, int32_t index_a, int32_t shape_b, int32_t index_b);
+
 Gap feature_gap(const Feature *f, const Placed *a, const Placed *b);
 
 /* The part of the gap's second derivative, and of the slip's first, that does not come from the bodies'

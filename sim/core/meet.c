@@ -44,20 +44,67 @@ bool feature_faces(const World *world, const Feature *f, const Gap *g, const Pla
     return is_nearest(world, f, g, a, b, slack) && leads_away(world, f, a, g->normal, slack);
 }
 
+/* Whether a side keeps a corner, with what it belongs to, off the side's shape, and goes on to. */
+static bool keeps_off(const World *world, const Feature *on_side, const Placed *a, const Placed *b,
+                      const Slack *slack) {
+    Gap g = feature_gap(on_side, a, b);
+    return g.gap >= -slack->gap && g.rate >= -slack->unsure && leads_away(world, on_side, a, g.normal, slack);
+}
+
+/* Whether the side of b that starts at this vertex keeps a's corner, or disk, off. */
+static bool side_keeps_off(const World *world, const Feature *f, int32_t side, const Placed *a, const Placed *b,
+                           const Slack *slack) {
+    Feature on_side = feature_on_side(world, f->shape_a, f->index_a, f->shape_b, side);
+    return keeps_off(world, &on_side, a, b, slack);
+}
+
+bool corner_passes(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
+                   const Slack *slack) {
+    int32_t na = world->shape[f->shape_a].count, nb = world->shape[f->shape_b].count;
+    if (f->is_corner)
+        return side_keeps_off(world, f, f->index_b, a, b, slack) ||
+               side_keeps_off(world, f, (f->index_b + nb - 1) % nb, a, b, slack);
+    if (!f->is_side || na == 1 || fabs(g->margin) > 8 * slack->gap) return false;
+    double from_start = vdot(vsub(place(a->at, f->point_a), place(b->at, f->point_b)), turn(b->at, f->along));
+    bool at_start = from_start < 0.5 * f->length;
+    int32_t corner = at_start ? f->index_b : (f->index_b + 1) % nb;
+    if (world->side[world->shape[f->shape_b].first + corner].reflex) return false;
+    if (side_keeps_off(world, f, at_start ? (f->index_b + nb - 1) % nb : corner, a, b, slack)) return true;
+    for (int32_t k = 0; k < 2; k++) { /* seen from the other corner: the two sides of a's */
+        Feature back = feature_on_side(world, f->shape_b, corner, f->shape_a, (f->index_a + (k ? na - 1 : 0)) % na);
+        if (keeps_off(world, &back, b, a, slack)) return true;
+    }
+    return false;
+}
+
 /* ---------------------------------------------------------------- touching now */
 
+/* Whether two touches of one corner are in a dent of the other outline: it is on both sides of that. */
+static bool is_in_a_dent(const World *world, const Feature *f, const Feature *g) {
+    if (!f->is_side || !g->is_side || f->shape_a != g->shape_a || f->index_a != g->index_a) return false;
+    const Shape *b = &world->shape[f->shape_b];
+    bool follows = (f->index_b + 1) % b->count == g->index_b, leads = (g->index_b + 1) % b->count == f->index_b;
+    return (follows && world->side[b->first + g->index_b].reflex) ||
+           (leads && world->side[b->first + f->index_b].reflex);
+}
+
 /* Drop the one of two touches at one point that says nothing new: the same touch seen from both sides, or a corner on
- * a corner, where the side that is approached faster, else the outer one, holds. */
-static bool merge_same_point(Touching *out, int32_t count, const Touching *found, double near) {
+ * a corner, where a side that is not approached, else the one that is approached faster, else the outer one, holds. */
+static bool merge_same_point(const World *world, Touching *out, int32_t count, const Touching *found,
+                             const Slack *slack) {
+    double near = 8 * slack->gap;
     for (int32_t k = 0; k < count; k++) {
         Touching *had = &out[k];
         bool same_pair =
             (had->feature.shape_a == found->feature.shape_a && had->feature.shape_b == found->feature.shape_b) ||
             (had->feature.shape_a == found->feature.shape_b && had->feature.shape_b == found->feature.shape_a);
         if (!same_pair || vlength(vsub(had->gap.point, found->gap.point)) > near) continue;
+        if (is_in_a_dent(world, &had->feature, &found->feature)) continue;
         if (fabs(vdot(had->gap.normal, found->gap.normal)) < 1 - 1e-9) {
+            bool had_stays = had->gap.rate >= -slack->unsure, found_stays = found->gap.rate >= -slack->unsure;
             double faster = had->gap.rate - found->gap.rate;
-            if (faster > near || (faster > -near && found->gap.gap > had->gap.gap + 1e-3 * near)) *had = *found;
+            bool nearer = faster > near || (faster > -near && found->gap.gap > had->gap.gap + 1e-3 * near);
+            if (had_stays != found_stays ? found_stays : nearer) *had = *found;
         }
         return true;
     }
@@ -82,7 +129,7 @@ int32_t touching_now(const World *world, int32_t body_a, const State *state_a, i
             t.gap = feature_gap(&t.feature, point_of, other);
             if (t.gap.gap > slack->gap || t.gap.gap < -slack->deep || t.gap.margin < -slack->gap) continue;
             if (!feature_faces(world, &t.feature, &t.gap, point_of, other, slack)) continue;
-            if (count < capacity && !merge_same_point(out, count, &t, 8 * slack->gap)) out[count++] = t;
+            if (count < capacity && !merge_same_point(world, out, count, &t, slack)) out[count++] = t;
         }
     }
     return count;

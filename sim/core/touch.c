@@ -196,6 +196,7 @@ static double shapes_step(const Search *s, int32_t shape_a, int32_t shape_b, con
         if (own <= 0 && g.rate >= -s->slack->speed) /* on its way in, slowly: unless it turns round at once */
             own = turning_step(s->slack, &g, gap_acceleration(s, &f, &g, pa, pb, time), steer, begins);
         if (own <= 0 && !feature_faces(s->world, &f, &g, point_of, side_of, s->slack)) own = passing;
+        if (own <= 0 && corner_passes(s->world, &f, &g, point_of, side_of, s->slack)) own = passing;
         if (own < passing && is_held(s, &f, &g, pa, pb)) own = passing;
         if (g.gap < -s->slack->gap && g.margin < -s->slack->gap) own = fmax(own, passing); /* in behind, and beside */
         if (own >= step) continue;

@@ -45,6 +45,10 @@ double first_touch(const World *world, Mover a, Mover b, double from, double to,
 bool feature_faces(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
                    const Slack *slack);
 
+/* Whether a corner that meets another passes by it: some side of the two keeps them apart, and goes on to. */
+bool corner_passes(const World *world, const Feature *f, const Gap *g, const Placed *a, const Placed *b,
+                   const Slack *slack);
+
 /* The features of two bodies that touch now, at most `capacity`; their number is returned.  Where a pair of features
  * is the same touch seen from both sides, one is given. */
 int32_t touching_now(const World *world, int32_t body_a, const State *a, int32_t body_b, const State *b,
