@@ -35,6 +35,7 @@ from sketch.reading import Reading, scored
 from sketch.sampling import sampled
 from sketch.scoring import Fitted
 from sketch.search import Packing, Part, part
+from sketch.writing import written
 
 __all__ = ["Reading", "Recognition", "Recognizer", "recognize"]
 
@@ -184,6 +185,7 @@ class Recognizer:
         likely: list[Pick] = self._alone.best([p.alone for p in proposed])
         page = self._proposals.page
         told = self._context.told(proposed, likely, page.size, page.drawn)
+        told = written(page, proposed, told, likely)
         known, self._parts = self._parts, {}
         for p, gains in zip(proposed, told, strict=True):
             there = known.get(p)

@@ -1,0 +1,188 @@
+"""Writing beside a machine: small strokes in a row, some of which mean nothing, are letters, and so are the rings and
+crosses among them. A line with a mark at either end says how long something is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.kernel import depth
+from sketch.pieces import Page, Piece
+from sketch.proposals import Proposed
+from sketch.scoring import Fitted
+
+__all__ = ["written"]
+
+Array = NDArray[np.float64]
+Pick = tuple[int, int]  # what was proposed by which piece, and which of it
+Rows = dict[int, set[int]]  # of each small stroke those that mean nothing in the row that it stands in
+
+WRITTEN = (
+    60.0  # nats that another thing in a row is likelier a letter, for each stroke there that means nothing
+)
+LARGEST = 0.05  # of the page: nobody writes larger beside a drawing
+BETWEEN = 1.0  # of the larger one's extent: what is between the strokes of a word, or of two, at most
+UNLIKE = 4.0  # times that strokes of one word are as large as others: a letter's bar, and its stem
+TALL = 2.2  # times that a thing in a word is as large as the largest stroke there, at most
+OVER = 1.2  # times as large as a mark is what it is a mark on, at least
+FEW = 16  # points of a stroke that are compared with others
+MEASURE = 30.0  # nats that a line with a mark at either end is no rod
+MARK = 0.25  # of its length: as large as those are,
+AT_END = 0.05  # and as near to its ends,
+ON = 0.02  # while others that are nearer to it mean something else: hatching, a floor
+
+
+def written(
+    page: Page, proposed: list[Proposed], told: list[list[float]], likely: list[Pick]
+) -> list[list[float]]:
+    """Gains, less what rings, crosses and bars lose by what is written there.
+
+    told: the gains of all that is proposed.  likely: which of it the ink makes likely.
+    """
+    chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in likely]
+    marks = _Marks([c for c, _ in chosen], LARGEST * page.size)
+    letters = [(c, gain) for c, gain in chosen if marks.may_be_written(c)]
+    idle = page.pieces.keys() - {i for c, _ in chosen if c.kind != "bar" for i in c.pieces}
+    idle |= {i for c, _ in letters if c.kind == "cross" for i in c.pieces}
+    rows = Rows()
+    small = {i: p for i, p in page.pieces.items() if p.extent < marks.largest}
+    while idle:
+        rows = _rows(page, small, idle)
+        lost = {i for c, gain in letters if gain < _loss(page, rows, c) for i in c.pieces}
+        if lost <= idle:
+            break
+        idle |= lost
+    if not idle:
+        return told
+    lone = [page.pieces[i] for i in sorted(idle)]
+    lines = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
+    measured = {i for bar in lines for i in _measured(page, bar, lone)}
+    out = list(told)
+    for n, p in enumerate(proposed):
+        for k, (c, gain) in enumerate(zip(p.candidates, told[n], strict=True)):
+            if gain <= 0:
+                continue
+            loss = 0.0
+            if (
+                p.rows[k][4] < marks.largest
+                and not rows.keys().isdisjoint(c.pieces)
+                and marks.may_be_written(c)
+            ):
+                loss = _loss(page, rows, c)
+            if c.kind == "bar" and not measured.isdisjoint(c.pieces):
+                loss += MEASURE
+            if loss:
+                out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
+                own[k] -= loss
+    return out
+
+
+class _Marks:
+    """What the ink makes likely, to be asked whether a reading may be a letter instead.
+
+    Attributes:
+        largest: of what is written [pixels].
+    """
+
+    def __init__(self, likely: Sequence[Fitted], largest: float) -> None:
+        self.largest = largest
+        self._bodies = [(c, _extent(c)) for c in likely if c.closed]
+        rings = [c for c, extent in self._bodies if c.kind == "circle" and extent < largest]
+        self._pins = [(c, under[0]) for c in rings if len(under := self._under(c)) == 1]
+
+    def may_be_written(self, c: Fitted) -> bool:
+        """Whether it is small, and no arrow, X on a body, or pivot: of two bodies, or the only one of its body."""
+        if c.kind == "arrow" or _extent(c) > self.largest:
+            return False
+        under = self._under(c)
+        if not under or c.kind not in ("circle", "cross"):
+            return True
+        others = (pin for pin, body in self._pins if body is under[0] and pin.pieces != c.pieces)
+        return c.kind == "circle" and len(under) == 1 and any(others)
+
+    def _under(self, c: Fitted) -> list[Fitted]:
+        """The bodies of other ink, that are larger, that its middle is over."""
+        (x, y), least = c.middle, OVER * _extent(c)
+        return [
+            b
+            for b, extent in self._bodies
+            if extent > least and set(c.pieces).isdisjoint(b.pieces) and depth(x, y, b.outline) < 0
+        ]
+
+
+def _extent(c: Fitted) -> float:
+    """The diagonal of a reading's bounding box [pixels]."""
+    return math.dist(c.outline.min(axis=0), c.outline.max(axis=0))
+
+
+def _loss(page: Page, rows: Rows, c: Fitted) -> float:
+    """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in."""
+    beside = set[int]().union(*(rows.get(i, ()) for i in c.pieces)).difference(c.pieces)
+    if not beside:
+        return 0.0
+    wide = _extent(c)
+    return WRITTEN * sum(wide < TALL * page.pieces[i].extent for i in beside)
+
+
+def _rows(page: Page, small: dict[int, Piece], idle: Collection[int]) -> Rows:
+    """small: the strokes that may be in one, by their index.  idle: those that mean nothing."""
+    left, rows = dict(small), Rows()
+    for start in sorted(idle):
+        if start not in left:
+            continue
+        row, reached = [left.pop(start)], 0
+        while reached < len(row) and left:
+            p = row[reached]
+            reached += 1
+            near = [q for q in left.values() if _near(page, p, q)]
+            row += near
+            for q in near:
+                del left[q.index]
+        its = {p.index for p in row if p.index in idle}
+        rows.update((p.index, its) for p in row)
+    return rows
+
+
+def _near(page: Page, p: Piece, q: Piece) -> bool:
+    """Whether two strokes are as near, and as alike in size, as those of a word."""
+    large = max(p.extent, q.extent)
+    reach = BETWEEN * large
+    if large > UNLIKE * min(p.extent, q.extent) or not _boxes_near(p, q, reach):
+        return False
+    one, other = (page.strokes.samples[r.stroke] for r in (p, q))
+    step = max(len(one) // FEW, 1)
+    gaps = one[::step, None] - other[None, ::step]
+    return bool((gaps**2).sum(axis=2).min() < reach**2)
+
+
+def _boxes_near(p: Piece, q: Piece, reach: float) -> bool:
+    (a, b, c, d), (e, f, g, h) = p.box, q.box
+    return e < c + reach and f < d + reach and g > a - reach and h > b - reach
+
+
+def _measured(page: Page, bar: Fitted, idle: Sequence[Piece]) -> set[int]:
+    """A line and the small marks at its ends, if there is one at either end, that means nothing else, and none between
+    them: their pieces."""
+    ends = bar.outline[[0, -1]]
+    long = math.dist(*ends.tolist())
+    its = [page.pieces[i] for i in bar.pieces]
+    near = [
+        q
+        for q in idle
+        if q.extent < MARK * long and q not in its and any(_boxes_near(p, q, AT_END * long) for p in its)
+    ]
+    if len(near) < 2:
+        return set()
+    inks = [page.strokes.samples[q.stroke] for q in near]
+    at = np.array(
+        [np.hypot(*(ink[:, None] - ends).transpose(2, 0, 1)).min(axis=0) < AT_END * long for ink in inks]
+    )
+    (ax, ay), (ux, uy) = ends[0], (ends[1] - ends[0]) / max(long, 1e-9)
+    off = np.array([np.abs((ink[:, 1] - ay) * ux - (ink[:, 0] - ax) * uy).min() for ink in inks])
+    there = np.asarray(at.any(axis=1))
+    if not (at.any(axis=0).all() and (there | (off > ON * long)).all()):
+        return set()
+    return {*bar.pieces, *(q.index for q, end in zip(near, there, strict=True) if end)}
