@@ -105,7 +105,8 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY * (1 + large)
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
-            gains[k] -= SLIP * ((extent < TWIG * drawn) + bodies.slip(c, extent))
+            slips = len(c.pieces) * (extent < TWIG * drawn)  # each stroke of a tiny one is
+            gains[k] -= SLIP * (slips + bodies.slip(c, extent))
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)
