@@ -15,6 +15,7 @@ from sketch.scan.crossed import crossed
 from sketch.scan.faces import standing
 from sketch.scan.grain import smoothed_grain
 from sketch.scan.graph import Graph, build_graph
+from sketch.scan.hidden import going_on
 from sketch.scan.overlaps import overlapping
 from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
 from sketch.scan.quantiles import percentile
@@ -166,6 +167,7 @@ def _strokes(seen: Traced) -> list[Points]:
     others += [_drawn(way, seen) for way in standing(sheets, stretches)]
     others += with_tails(likeliest + others, pen * seen.scale)
     overlaps = [_drawn(way, seen) for way in overlapping(sheets[1], round_ways, stretches)]
+    others += [_drawn(way, seen) for way in going_on(first, distance, pen)]
     others += [_drawn(way, seen) for way in crossed(drawn, first, distance, pen)]
     if others or overlaps:
         height, width = mask.shape

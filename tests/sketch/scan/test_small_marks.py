@@ -10,6 +10,8 @@ from test_tangles import BOX, circle, inked, kinds, read
 from sketch.scan.binding import thin, trace
 from sketch.scan.corners import sharpen_corners
 from sketch.scan.graph import Graph, build_graph
+from sketch.scan.hidden import going_on
+from sketch.scan.ways import Way
 
 Line = list[tuple[float, float]]
 
@@ -70,3 +72,30 @@ def test_a_small_circle_has_no_corners(pen: float, radius: float) -> None:
     ring = [circle(250, 200, radius * pen)]
     (as_thinned,), (edge,) = traced(ring, pen, sharpened=False).edges, traced(ring, pen).edges
     assert {*map(tuple, edge.points)} == {*map(tuple, as_thinned.points)}
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+@pytest.mark.parametrize("graze", [20, 35])
+def test_an_x_whose_bar_begins_under_a_side_anchors_its_plank(pen: float, graze: int) -> None:
+    corners = np.array([(-170, -22), (170, -22), (170, 22), (-170, 22), (-170, -22)])
+    crossing = np.array([0, -22 + pen / 2])
+    grazing, steep = ([np.cos(a), np.sin(a)] for a in (np.radians(graze), np.radians(graze) + 1.6))
+    bars = [np.outer([-1.5 * pen, 30], grazing) + crossing, np.outer([-22, 22], steep) + crossing]
+    turned = np.array([[np.cos(0.5), np.sin(0.5)], [-np.sin(0.5), np.cos(0.5)]])
+    lines: list[Line] = [list(map(tuple, line @ turned + (320, 220))) for line in (corners, *bars)]
+    scene = read(lines, pen)
+    assert kinds(scene) == ["rectangle"]
+    assert scene.bodies[0].anchored
+
+
+def test_a_line_that_ends_at_another_goes_on_to_the_far_edge_of_its_ink_alone() -> None:
+    mask = np.zeros((60, 80), np.uint8)
+    mask[10:20] = 1
+    mask[20:50, 38:43] = 1
+    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    y = np.arange(50.0, 14.0, -1)
+    line = Way(np.stack([np.full(len(y), 40.0), y], axis=1), {0: np.zeros((1, 2))}, 1.0)
+    (found,) = going_on([line], distance, 5.0)
+    assert 12 <= found.points[-1][1] <= 13  # half a pen from the ink's edge
+    assert np.array_equal(found.points[: len(y)], line.points)
+    assert going_on([Way(line.points, line.ink, 0.0)], distance, 5.0) == []  # it ends at no other ink

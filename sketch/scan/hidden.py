@@ -1,0 +1,53 @@
+"""Lines whose ends are hidden under other ink: a bar of an X that reaches just into a plank's side.
+
+Where a line ends at other ink, nobody can see whether it ends there or goes on beneath.  It may go on as far as there
+is ink straight ahead; what other lines it crosses, or what it is a part of, tells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sketch.scan.binding import heading
+from sketch.scan.graph import SIGHT
+from sketch.scan.ways import Way
+
+__all__ = ["going_on"]
+
+Points = NDArray[np.float64]
+
+ROUND = 0.5  # pen widths: an end of a line is as far from the edge of its ink; less than as much further is nothing
+
+
+def going_on(ways: list[Way], distance: NDArray[Any], pen: float) -> list[Way]:
+    """The open ways among these that may go on under other ink, each prolonged straight at every such end.
+
+    distance: each pixel's distance to the paper, shape (h, w).  pen: its width [pixels].
+    """
+    out = []
+    for way in ways:
+        if np.array_equal(way.points[0], way.points[-1]) or not way.strain:
+            continue
+        head, tail = (_beyond(points, distance, pen) for points in (way.points[::-1], way.points))
+        if len(head) or len(tail):
+            out.append(replace(way, points=np.concatenate([head[::-1], way.points, tail])))
+    return out
+
+
+def _beyond(points: Points, distance: NDArray[Any], pen: float) -> Points:
+    """Where a way may go on from its last point on, under ink, shape (n, 2), a point a pixel; empty where it cannot."""
+    end = points[-1]
+    _, back = heading(points[::-1], end, pen, SIGHT * pen)
+    height, width = distance.shape
+    steps = np.arange(1, int(np.hypot(height, width)))
+    ahead = end - steps[:, None] * back
+    x, y = np.round(ahead).astype(int).T
+    on = (x >= 0) & (y >= 0) & (x < width) & (y < height)
+    on[on] = distance[y[on], x[on]] > 0
+    count = int(np.argmin(on)) if not on.all() else len(on)
+    count -= round(ROUND * pen)
+    return np.asarray(ahead[: count if count > ROUND * pen else 0])
