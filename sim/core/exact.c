@@ -103,6 +103,24 @@ static int32_t closed_features(Exact *e, int32_t a, int32_t b) {
     return count;
 }
 
+/* Whether contacts hold two bodies so that neither moves against the other: at two points, and by friction at one. */
+static bool is_one_piece(const Exact *e, int32_t a, int32_t b) {
+    int32_t owner = e->track[a].island >= 0 ? e->track[a].island : e->track[b].island;
+    if (owner < 0) return false;
+    const Island *island = &e->island[owner];
+    const Contact *first = NULL;
+    bool sticks = false, two = false;
+    for (int32_t k = 0; k < island->contact_count; k++) {
+        const Contact *c = &island->contact[k];
+        const Feature *f = &c->feature;
+        if (!((f->body_a == a && f->body_b == b) || (f->body_a == b && f->body_b == a))) continue;
+        if (!first) first = c;
+        two = two || vlength(vsub(c->gap.point, first->gap.point)) > 8 * e->slack.gap;
+        sticks = sticks || (c->slide == 0 && c->friction > 0);
+    }
+    return two && sticks;
+}
+
 static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
     Track *ta = &e->track[a], *tb = &e->track[b];
     if (ta->motion.degree == 0 && tb->motion.degree == 0) return;
@@ -116,6 +134,7 @@ static void find_touch(Exact *e, int32_t a, int32_t b, double from) {
         e->spent += GLANCE;
         if (course_nearest(&e->course[a], &e->course[b], to - from) > reach) return;
     }
+    if (is_one_piece(e, a, b)) return;
     int32_t closed = closed_features(e, a, b);
     Mover ma = {a, &ta->motion}, mb = {b, &tb->motion};
     e->world->profile.pairs += 1;
