@@ -2,8 +2,8 @@
 
 The truth of a case is a function of the sample times that gives the poses of its moving bodies.  Flight,
 impacts, every regime of friction, rolling, pivots and rest are each there alone, so that an error in one can
-be told from an error in another; linkages.py, mechanisms.py and slipping.py have more, and those in which one
-turns into another.
+be told from an error in another; linkages.py, mechanisms.py, slipping.py and contacts.py have more, and those in
+which one turns into another.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sim.bench.contacts import CONTACTS
 from sim.bench.linkages import LINKAGES
 from sim.bench.mechanisms import MECHANISMS
 from sim.bench.parts import (
@@ -21,6 +22,7 @@ from sim.bench.parts import (
     G,
     along,
     case_error,
+    flights,
     make_box,
     make_disk,
     make_ground,
@@ -46,16 +48,8 @@ def _projectile() -> Case:
 def _heights(t: Array, drop: float, gravity: float, e: float) -> Array:
     """Height of a point dropped from `drop` that bounces with restitution e until it rests."""
     out = np.zeros_like(t)
-    start, speed = 0.0, 0.0
-    fall = math.sqrt(2 * drop / gravity)
-    first = t < fall
-    out[first] = drop - gravity / 2 * t[first] ** 2
-    start, speed = fall, gravity * fall * e
-    while speed > 1e-12:
-        end = start + 2 * speed / gravity
-        now = (t >= start) & (t < end)
-        out[now] = np.maximum(speed * (t[now] - start) - gravity / 2 * (t[now] - start) ** 2, 0)
-        start, speed = end, speed * e
+    for here, _, height, _, _ in flights(t, drop, e, gravity=gravity):
+        out[here] = height
     return out
 
 
@@ -414,4 +408,5 @@ CASES: list[Case] = [
     *MECHANISMS,
     *LINKAGES,
     *SLIPPING,
+    *CONTACTS,
 ]

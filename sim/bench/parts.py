@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ __all__ = [
     "G",
     "along",
     "case_error",
+    "flights",
     "make_box",
     "make_disk",
     "make_ground",
@@ -87,3 +88,19 @@ def along(slope: float, s: Array, height: float) -> tuple[Array, Array]:
 
 def poses(*bodies: tuple[Array | float, Array | float, Array | float], times: Array) -> Array:
     return np.stack([np.stack([np.broadcast_to(v, times.shape) for v in b], axis=1) for b in bodies], axis=1)
+
+
+def flights(
+    t: Array, drop: float, e: float, up: float = 0.0, gravity: float = G
+) -> Iterator[tuple[NDArray[np.bool_], Array, Array, float, float]]:
+    """The flights of a point from `drop` above a floor at speed `up`, which bounces with restitution e until it rests.
+
+    Yields of each: which samples are in it, the times since it began and the heights at those, how long it
+    lasts [s] and how fast it ends [m/s].
+    """
+    now, height = 0.0, drop
+    while (length := (up + math.sqrt(up * up + 2 * gravity * height)) / gravity) > 1e-13:
+        here = (t >= now) & (t < now + length)
+        since, down = t[here] - now, gravity * length - up
+        yield here, since, height + up * since - gravity / 2 * since**2, length, down
+        now, height, up = now + length, 0.0, e * down

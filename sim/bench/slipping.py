@@ -11,7 +11,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.bench.parts import Array, Case, G, along, make_box, make_disk, make_ground, make_scene, poses
+from sim.bench.parts import (
+    Array,
+    Case,
+    G,
+    along,
+    flights,
+    make_box,
+    make_disk,
+    make_ground,
+    make_scene,
+    poses,
+)
 from sim.bench.phases import Phases
 from sim.scene import Body, Joint, Polygon
 
@@ -79,17 +90,10 @@ def _bounces_then_rolls() -> Case:
 
     def truth(t: Array) -> Array:
         x, angle, height = np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
-        now, at, turned = 0.0, 0.0, 0.0
-        vx, w, up, h = v, spin, 0.0, drop
-        while True:
-            flight = (up + math.sqrt(up * up + 2 * G * h)) / G
-            if flight < 1e-13:
-                break
-            here = (t >= now) & (t < now + flight)
-            d = t[here] - now
-            x[here], angle[here], height[here] = at + vx * d, turned + w * d, h + up * d - G / 2 * d * d
-            down = G * flight - up
-            at, turned, now, h, up = at + vx * flight, turned + w * flight, now + flight, 0.0, e * down
+        now, at, turned, vx, w = 0.0, 0.0, 0.0, v, spin
+        for here, d, h, length, down in flights(t, drop, e):
+            x[here], angle[here], height[here] = at + vx * d, turned + w * d, h
+            now, at, turned = now + length, at + vx * length, turned + w * length
             slip = vx + w * r
             push = -math.copysign(min(mu * (1 + e) * down, abs(slip) / 3), slip)
             vx, w = vx + push, w + 2 * push / r
@@ -201,15 +205,9 @@ def _lands_flat() -> Case:
     e, drop = 0.6, 0.8
 
     def truth(t: Array) -> Array:
-        height, now, up, h = np.zeros_like(t), 0.0, 0.0, drop
-        while True:
-            flight = (up + math.sqrt(up * up + 2 * G * h)) / G
-            if flight < 1e-13:
-                break
-            here = (t >= now) & (t < now + flight)
-            d = t[here] - now
-            height[here] = h + up * d - G / 2 * d * d
-            now, h, up = now + flight, 0.0, e * (G * flight - up)
+        height = np.zeros_like(t)
+        for here, _, h, _, _ in flights(t, drop, e):
+            height[here] = h
         return poses((0.0, 0.25 + height, 0.0), times=t)
 
     box = make_box("a", (0.9, 0.5), (0.0, 0.25 + drop), elasticity=e, friction=0.5)
