@@ -60,7 +60,7 @@ def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
     """Other pieces that an open one ends on with both ends, and their ink between these: a side that is shared."""
     if p.length < BENT * p.gap or not p.gap:
         return
-    ends, reach = np.array(p.ends), ENDS_ON * p.length
+    ends, reach, known = np.array(p.ends), ENDS_ON * p.length, list[Array]()
     low, high = (ends.min(axis=0) - reach).tolist(), (ends.max(axis=0) + reach).tolist()
     for q in page.touching(*low, *high):
         if q is p or not page.apart(q.index, (p.index,)):
@@ -76,8 +76,13 @@ def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
         count, step = abs(at - to), 1 if at > to else -1
         if q.gap < ENDS_ON * q.length and 2 * count > len(ink):
             count, step = len(ink) - count, -step
-        if 0 < count * q.length / len(ink) < DETOUR * p.gap:
-            yield q.index, ink[(to + step * np.arange(count + 1)) % len(ink)]
+        if not 0 < count * q.length / len(ink) < DETOUR * p.gap:
+            continue
+        side = ink[(to + step * np.arange(count + 1)) % len(ink)]
+        places = side[[count // 4, count // 2, 3 * count // 4]]
+        if all(np.hypot(*(places - others).T).max() > p.gap / FINE + q.length / len(ink) for others in known):
+            known.append(places)
+            yield q.index, side
 
 
 def _distances(ink: Array, ends: Array) -> Array:
