@@ -30,7 +30,7 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
         from sketch.scan.stages import write_stages
 
         write_stages(stages, picture, traced)
-    notes = [] if traced.strokes else ["no ink was found on the picture"]
+    notes = [] if traced.strokes else [traced.problem or "no ink was found on the picture"]
     if not sound:
         notes.append("the picture's file is damaged: what could be decoded was read")
     if traced.specks:

@@ -107,8 +107,9 @@ def find_junctions(graph: Graph, pen: float) -> list[Junction]:
             curvature = bend(points, start, SIGHT * pen, SMOOTH)
             branches[k].append(Branch(end, start, outward, curvature * SIGHT * pen, centre))
     junctions = _share_bridges(graph, branches, crossing, pen)
+    home = {k: junction for junction in junctions for k in junction[0]}
     for e in short:
-        junctions[_find(junctions, crossing[graph.edges[e].ends[0]])][2].append(e)
+        home[crossing[graph.edges[e].ends[0]]][2].append(e)
     return [Junction(b, _pair(b)[1], bridges) for _, b, bridges in junctions]
 
 
@@ -137,20 +138,17 @@ def _group(count: int, joined: Sequence[tuple[int, int]]) -> list[int]:
 _Merged = list[tuple[set[int], list[Branch], list[int]]]  # crossings, branches, bridges
 
 
-def _find(junctions: _Merged, crossing: int) -> int:
-    return next(k for k, (crossings, _, _) in enumerate(junctions) if crossing in crossings)
-
-
 def _share_bridges(
     graph: Graph, branches: dict[int, list[Branch]], crossing: list[int], pen: float
 ) -> _Merged:
     """Merge the junctions at both ends of a bridge where the branches then continue each other better."""
-    junctions: _Merged = [({k}, found, []) for k, found in branches.items()]
+    junctions = {k: ({k}, found, list[int]()) for k, found in branches.items()}
+    home = {k: k for k in branches}  # of each crossing, its junction
     lengths = [(edge.length, e) for e, edge in enumerate(graph.edges) if _is_bridge(edge.ends)]
     for length, e in sorted(lengths):
         if not CROSSING * pen <= length < MERGED * pen:
             continue
-        first, second = (_find(junctions, crossing[node]) for node in graph.edges[e].ends)
+        first, second = (home[crossing[node]] for node in graph.edges[e].ends)
         if first == second:
             continue
         a, b = junctions[first], junctions[second]
@@ -163,8 +161,8 @@ def _share_bridges(
         crossing_over = sum(i < left <= j for i, j in pairs)
         if crossing_over >= 2 and cost + BRIDGE_COST * length / pen < apart:
             junctions[first] = (a[0] | b[0], together, [*a[2], *b[2], e])
-            del junctions[second]
-    return junctions
+            home.update((k, first) for k in junctions.pop(second)[0])
+    return list(junctions.values())
 
 
 def turn_cost(a: Branch, b: Branch) -> float:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -71,10 +70,9 @@ def _seeds(
     small = [(way, area) for way, area in every if area < largest]
     seeds = [_middle_and_radius(way, np.sqrt(max(area, 1) / np.pi) + pen / 2) for way, area in small]
     # a line across a ring makes two holes of one
-    for (one, _), (other, _) in combinations(small, 2):
-        if np.abs(one[0, 0] - other[0, 0]).max() < 2 * LARGEST * pen:
-            (x, y), radius = cv2.minEnclosingCircle(np.concatenate([one, other]))
-            seeds.append((x, y, radius + pen / 2 - 1))
+    for i, j in _beside(np.array([way[0, 0] for way, _ in small]).reshape(-1, 2), 2 * LARGEST * pen):
+        (x, y), radius = cv2.minEnclosingCircle(np.concatenate([small[i][0], small[j][0]]))
+        seeds.append((x, y, radius + pen / 2 - 1))
     # ink much wider than a line is a hole that closed, wholly or in part
     inside = _grown((distance > 0.75 * pen).view(np.uint8), pen / 4)
     cv2.drawContours(inside, [way for way, _ in small], -1, 1, cv2.FILLED)
@@ -83,6 +81,18 @@ def _seeds(
         seeds.append(_middle_and_radius(way, np.sqrt((cv2.contourArea(way) + len(way)) / np.pi)))
         seeds.append(_middle_and_radius(way, max(box[2:]) / 2))
     return [seed for seed in seeds if SMALLEST * pen / 2 <= seed[2] <= LARGEST * pen]
+
+
+def _beside(places: NDArray[Any], apart: float) -> list[tuple[int, int]]:
+    """The pairs of some places, (n, 2), that are less than `apart` from each other either way, in order [pixels]."""
+    order = np.argsort(places[:, 0], kind="stable")
+    ahead = np.searchsorted(places[order, 0], places[order, 0] + apart)
+    pairs = []
+    for k, end in enumerate(ahead.tolist()):
+        others = order[k + 1 : end]
+        close = others[np.abs(places[others] - places[order[k]]).max(axis=1, initial=0) < apart]
+        pairs += [(min(int(order[k]), j), max(int(order[k]), j)) for j in close.tolist()]
+    return sorted(pairs)
 
 
 def _middle_and_radius(way: NDArray[Any], radius: float) -> tuple[float, float, float]:
@@ -110,18 +120,16 @@ def take_rings(
         if not edge.ink:
             edge.ink = {next(names): edge.points}
     parts = {k: edge.ink for k, edge in enumerate(whole)}
+    origin = {name: k for k, ink in parts.items() for name in ink}
     nodes, radius = graph.nodes, graph.radius
     taken = []
-    boxes: dict[Edge, Box] = {}
+    places = _Places(graph.edges)
     for ring in rings:
         middle = (ring.points.min(axis=0) + ring.points.max(axis=0)) / 2
-        place = (float(middle[0]), float(middle[1]))
         reach = float(np.hypot(*(ring.points - middle).T).max()) + BELT * pen
-        inside = set(np.flatnonzero(np.hypot(*(graph.nodes - middle).T) < reach).tolist())
         within = {
-            k: np.hypot(*(edge.points - middle).T) < reach
-            for k, edge in enumerate(graph.edges)
-            if _comes_near(edge, place, reach, boxes)
+            k: np.hypot(*(graph.edges[k].points - middle).T) < reach
+            for k in places.near(middle, reach).tolist()
         }
         crossing = [k for k, points in within.items() if points.any()]
         around = float(np.hypot(*np.diff(ring.points, axis=0).T).sum())
@@ -130,7 +138,7 @@ def take_rings(
         only = within[crossing[0]]
         if len(crossing) == 1 and only.mean() > 0.5 and np.count_nonzero(only) > ALL_ROUND * around:
             continue  # it stands by itself
-        ink = _take(graph, middle, reach, inside, pen, names, parts, boxes)
+        ink = _take(graph, middle, reach, pen, names, parts, origin, places)
         hidden = round(around) - sum(map(len, ink.values()))
         if hidden > 0:  # thinning leaves less of a blot than was drawn
             ink[next(names)] = ring.points[np.arange(hidden) % len(ring.points)]
@@ -143,14 +151,42 @@ def take_rings(
     return Graph(nodes, radius, [edge for edge, there in zip(whole, near, strict=True) if there]), taken
 
 
-def _comes_near(edge: Edge, middle: tuple[float, float], reach: float, boxes: dict[Edge, Box]) -> bool:
-    """Whether the box around an edge comes within reach: on a page of writing few do."""
-    if edge not in boxes:
-        (left, top), (right, bottom) = edge.points.min(axis=0).tolist(), edge.points.max(axis=0).tolist()
-        boxes[edge] = left, top, right, bottom
-    left, top, right, bottom = boxes[edge]
-    x, y = middle
-    return left - reach < x < right + reach and top - reach < y < bottom + reach
+class _Places:
+    """Where a graph's edges are, in their order: on a page of writing few come near a place."""
+
+    def __init__(self, edges: list[Edge]) -> None:
+        self._boxes = np.array([_box(edge) for edge in edges]).reshape(-1, 4)
+        self._ends = np.array([edge.ends for edge in edges], dtype=np.intp).reshape(-1, 2)
+
+    def near(self, middle: Points, reach: float) -> NDArray[np.intp]:
+        """The edges whose boxes come within `reach` of a place [pixels]."""
+        return np.flatnonzero(self._comes_near(middle, reach))
+
+    def touched(self, middle: Points, reach: float, inside: NDArray[np.bool_]) -> list[int]:
+        """Likewise, and those that end at one of some nodes."""
+        ending = ((self._ends >= 0) & inside[self._ends]).any(axis=1)
+        found: list[int] = np.flatnonzero(self._comes_near(middle, reach) | ending).tolist()
+        return found
+
+    def replace(self, gone: list[int], pieces: list[list[Edge]]) -> None:
+        """Put the pieces of some edges in their places."""
+        after = [k - 1 for k, cut in zip(gone, pieces, strict=True) for _ in cut]
+        new = [edge for cut in pieces for edge in cut]
+        left = np.delete(np.arange(len(self._boxes)), gone)
+        order = np.argsort(np.concatenate([left, np.array(after) + 0.5]), kind="stable")
+        boxes = np.array([_box(edge) for edge in new]).reshape(-1, 4)
+        ends = np.array([edge.ends for edge in new], dtype=np.intp).reshape(-1, 2)
+        self._boxes = np.concatenate([self._boxes[left], boxes])[order]
+        self._ends = np.concatenate([self._ends[left], ends])[order]
+
+    def _comes_near(self, middle: Points, reach: float) -> NDArray[np.bool_]:
+        least, most = self._boxes[:, :2] - reach, self._boxes[:, 2:] + reach
+        return np.asarray(((least < middle) & (middle < most)).all(axis=1))
+
+
+def _box(edge: Edge) -> Box:
+    (left, top), (right, bottom) = edge.points.min(axis=0).tolist(), edge.points.max(axis=0).tolist()
+    return left, top, right, bottom
 
 
 def _reached(edges: list[Edge], touched: list[bool]) -> list[bool]:
@@ -167,49 +203,56 @@ def _take(
     graph: Graph,
     middle: Points,
     reach: float,
-    inside: set[int],
     pen: float,
     names: Iterator[int],
     parts: dict[int, Ink],
-    boxes: dict[Edge, Box],
+    origin: dict[int, int],
+    places: _Places,
 ) -> Ink:
     """Cut a ring out of the graph, in place; returns its ink.
 
-    names: for stretches of ink that are new by being cut.  parts: of each whole edge, the stretches.  boxes: around
-    edges, as far as they are known.
+    names: for stretches of ink that are new by being cut.  parts: of each whole edge, the stretches.  origin: of each
+    stretch, the whole edge.  places: of the graph's edges.
     """
+    inside = np.hypot(*(graph.nodes - middle).T) < reach
+    touched = places.touched(middle, reach, inside)
     node = len(graph.nodes)
     graph.nodes = np.concatenate([graph.nodes, middle[None]])
     graph.radius = np.append(graph.radius, reach)
-    edges = []
     ink: Ink = {}
-    place = (float(middle[0]), float(middle[1]))
-    for edge in graph.edges:
-        head, tail = (node if end in inside else end for end in edge.ends)
-        if (head, tail) == edge.ends and not _comes_near(edge, place, reach, boxes):
-            edges.append(edge)
-            continue
+    pieces: list[list[Edge]] = []
+    for edge in map(graph.edges.__getitem__, touched):
+        head, tail = (node if end >= 0 and inside[end] else end for end in edge.ends)
         outside = np.hypot(*(edge.points - middle).T) >= reach
         if outside.all() and (head, tail) == edge.ends:
-            edges.append(edge)
+            pieces.append([edge])
             continue
         (name,) = edge.ink
-        whole = next(k for k, found in parts.items() if name in found)
+        whole = origin[name]
         parts[whole] = stretches = {n: size for n, size in parts[whole].items() if n != name}
         steps = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(int), [0]])))
         if not outside.all():
             name = next(names)
+            origin[name] = whole
             stretches[name] = ink[name] = edge.points[~outside]
+        cut = []
         for a, b in steps.reshape(-1, 2):
             ends = (head if a == 0 else node, tail if b == len(outside) else node)
             piece = Edge(edge.points[a:b], ends)
             name = next(names)
+            origin[name] = whole
             stretches[name] = piece.points
             # a stub that ends freely beside the belt is the belt's own
             if b - a > 1 and (node not in ends or min(ends) >= 0 or piece.length > pen):
                 piece.ink = {name: piece.points}
-                edges.append(piece)
+                cut.append(piece)
             else:
                 ink[name] = piece.points
-    graph.edges = edges
+        pieces.append(cut)
+    places.replace(touched, pieces)
+    edges, passed = list[Edge](), 0
+    for k, cut in zip(touched, pieces, strict=True):
+        edges += [*graph.edges[passed:k], *cut]
+        passed = k + 1
+    graph.edges = edges + graph.edges[passed:]
     return ink

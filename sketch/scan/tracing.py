@@ -32,6 +32,8 @@ __all__ = ["Traced", "trace_picture"]
 Points = NDArray[np.float64]
 
 WORK_PIXELS = 2_500_000  # more than this are not looked at before the pen's width is known
+MOST_PIXELS = 16_000_000  # that are ever looked at: no pen is as thin as a pixel of these
+MOST_LINES = 4000  # between junctions: drawings of hundreds of things have as many, fine print has more
 DOTTED = 0.12  # of the picture's pixels: lines of a drawing are farther apart than eight pixels
 FEWEST_DOTS = 10_000  # [pixels] unless the picture is as small as a stamp
 LEAST_SIDE = 8  # [pixels] of a picture that can show anything
@@ -56,6 +58,7 @@ class Traced:
             paper.  All None where the picture is too small to show anything.
         pen: width of the pen [pixels of the stages' pictures].
         specks: how many pieces were too small to be anything.
+        problem: why nothing was read, if there was something.
     """
 
     strokes: list[Points] = field(default_factory=list)
@@ -66,6 +69,7 @@ class Traced:
     distance: NDArray[Any] | None = None
     pen: float = 0.0
     specks: int = 0
+    problem: str = ""
 
 
 def trace_picture(picture: NDArray[Any]) -> Traced:
@@ -82,9 +86,12 @@ def trace_picture(picture: NDArray[Any]) -> Traced:
         scale *= (
             2.0 if seen.pen > WIDEST_PEN or _is_dotted(seen) else 0.5 if seen.pen < NARROWEST_PEN else 1.0
         )
-        if scale in tried or scale < FINEST or min(picture.shape[:2]) < 100 * scale:
+        pixels = picture.shape[0] * picture.shape[1] / scale**2
+        if scale in tried or scale < FINEST or pixels > MOST_PIXELS or min(picture.shape[:2]) < 100 * scale:
             break
-    if not _is_dotted(seen):
+    if _is_dotted(seen):
+        seen.problem = "nothing was read: dots or shading cover the picture"
+    else:
         seen.strokes = _strokes(seen)
     return seen
 
@@ -141,7 +148,11 @@ def _strokes(seen: Traced) -> list[Points]:
         skeleton &= mask
         size = cv2.countNonZero(skeleton)
     seen.skeleton, seen.distance = skeleton, distance
-    graph = build_graph(trace(skeleton, size), distance, pen)
+    chains = trace(skeleton, size)
+    if len(chains.chains) > MOST_LINES:
+        seen.problem = f"nothing was read: {len(chains.chains)} lines are too many for a drawing"
+        return []
+    graph = build_graph(chains, distance, pen)
     centre_on_ink(graph, page.darkness, pen)
     sharpen_corners(graph, distance, pen)
     drawn = Graph(graph.nodes, graph.radius, list(graph.edges))
