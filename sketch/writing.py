@@ -23,7 +23,8 @@ Rows = dict[int, set[int]]  # of each small stroke those that mean nothing in th
 WRITTEN = (
     60.0  # nats that another thing in a row is likelier a letter, for each stroke there that means nothing
 )
-LARGEST = 0.05  # of the page: nobody writes larger beside a drawing
+ROUGH = 20.0  # nats that a small polygon in several strokes leaves to be said about its ink, and is a letter by itself
+LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
 BETWEEN = 1.0  # of the larger one's extent: what is between the strokes of a word, or of two, at most
 UNLIKE = 4.0  # times that strokes of one word are as large as others: a letter's bar, and its stem
 TALL = 2.2  # times that a thing in a word is as large as the largest stroke there, at most
@@ -43,7 +44,7 @@ def written(
     told: the gains of all that is proposed.  likely: which of it the ink makes likely.
     """
     chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in likely]
-    marks = _Marks([c for c, _ in chosen], LARGEST * page.size)
+    marks = _Marks([c for c, _ in chosen], LARGEST * page.drawn)
     letters = [(c, gain) for c, gain in chosen if marks.may_be_written(c)]
     idle = page.pieces.keys() - {i for c, _ in chosen if c.kind != "bar" for i in c.pieces}
     idle |= {i for c, _ in letters if c.kind == "cross" for i in c.pieces}
@@ -55,8 +56,6 @@ def written(
         if lost <= idle:
             break
         idle |= lost
-    if not idle:
-        return told
     lone = [page.pieces[i] for i in sorted(idle)]
     lines = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
     measured = {i for bar in lines for i in _measured(page, bar, lone)}
@@ -74,6 +73,8 @@ def written(
                 loss = _loss(page, rows, c)
             if c.kind == "bar" and not measured.isdisjoint(c.pieces):
                 loss += MEASURE
+            if c.rough > ROUGH and len(c.pieces) > 1 and p.rows[k][4] < marks.largest:
+                loss += WRITTEN
             if loss:
                 out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
                 own[k] -= loss

@@ -111,7 +111,8 @@ def test_hatching_under_a_box_leaves_its_corners_alone(seed: int) -> None:
 
 def test_eyes_in_a_ball_are_no_pivots() -> None:
     rng = np.random.default_rng(5)
-    face = circle((500, 300), 60, HAND, rng)
-    eyes = [*circle((480, 282), 7, HAND, rng), *circle((520, 282), 7, HAND, rng)]
-    scene = read(face, eyes, line(arc(500, 306, 30, 30, 20, 160), HAND, rng)).scene
-    assert (len(scene.bodies), scene.joints) == (1, [])
+    face = circle((500, 300), 45, HAND, rng)
+    eyes = [*circle((486, 286), 5, HAND, rng), *circle((514, 286), 5, HAND, rng)]
+    floor = outline(box(640, 500, 900, 60), HAND, rng)
+    scene = read(floor, face, eyes, line(arc(500, 305, 22, 22, 20, 160), HAND, rng)).scene
+    assert (len(scene.bodies), scene.joints) == (2, [])
