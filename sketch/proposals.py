@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
 
@@ -20,11 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, in_line, shafts
-from sketch.loose import End
+from sketch.kernel import off_outline
+from sketch.loose import Chain, End
 from sketch.marks import read_arrows, read_bar, read_bar_of_two, read_cross, read_line, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_outline
 from sketch.pieces import Looked, Page, Piece
-from sketch.scoring import Fitted
+from sketch.scoring import Fitted, misfit_of
 from sketch.search import Part, part
 
 __all__ = ["Box", "Proposals", "Proposed", "Row", "proposing"]
@@ -32,6 +33,7 @@ __all__ = ["Box", "Proposals", "Proposed", "Row", "proposing"]
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
 CLOSED = 0.04  # of its ink, what is missing at most of an outline that needs no other ink
 MEANT = 4.0  # nats that a reading is to save: less would be luck, as so many are tried
+LITTLE = 0.2  # of an outline's scale: pieces whose distance from it is compared with their own
 HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less than that for it
 
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
@@ -195,7 +197,7 @@ class Proposals:
                 found = alone.outlines
             else:
                 key = tuple(i for i, _ in chain), tuple(back for _, back in chain)
-                found = fitted(key, partial(read_outline, page, chain))
+                found = fitted(key, partial(_read_chain, page, chain))
             if _closes(min(found, key=lambda f: f.cost), self._said(tuple(group))):
                 whole.append((gap, group))
             out += found
@@ -267,6 +269,26 @@ def _closes(outline: Fitted, free: float) -> bool:
 
 def _kept(found: Fitted | None) -> list[Fitted]:
     return [] if found is None else [found]
+
+
+def _read_chain(page: Page, chain: Chain) -> list[Fitted]:
+    """The readings of an outline of several pieces, of which the little ones run along it to their own precision.
+
+    Else a letter beside a box's corner would be a part of it: it is no further off than a long side may be.
+    """
+    found = read_outline(page, chain)
+    little = [p for p in (page.pieces[i] for i, _ in chain) if p.scale < LITTLE * found[0].scale]
+    if not little or len(chain) == 1:
+        return found
+    strokes, free = [p.stroke for p in little], sum(page.pieces[i].unread for i, _ in chain)
+    out = []
+    for f in found:
+        if f.cost < free:
+            off = off_outline(page.strokes, strokes, f.outline)
+            said = (min(misfit_of(p, square), p.unread) for p, square in zip(little, off, strict=True))
+            f = replace(f, cost=f.cost + sum(said))
+        out.append(f)
+    return out
 
 
 def _again(page: Page, found: list[Fitted], free: dict[int, float]) -> list[Fitted]:
