@@ -15,9 +15,6 @@ enum {
 static const double LOOSE = 0.3; /* gaps of a chain, as a share of its ink, overshoots counted as gaps */
 static const double REACH = 1.5 * 0.3; /* the longest single gap, as a share of the pieces on its two sides */
 
-static const double LITTLE = 0.12; /* of a chain's ink: one or two strokes that are as little, */
-static const double DETOUR = 5; /* and through which the way is so many times as long as past them, are other ink */
-
 typedef struct {
     int32_t links
         [MOST_PARTS]; /* ends that the pieces begin with: 2 * piece, or one more where it is gone through backward */
@@ -73,29 +70,6 @@ static void look_around(Search *s, int end) {
     s->count[end] = n;
 }
 
-static double apart_by(const Search *s, int a, int b) {
-    return hypot(s->at[2 * a] - s->at[2 * b], s->at[2 * a + 1] - s->at[2 * b + 1]);
-}
-
-/* Whether a way around makes a detour through little ink: a letter, or a line of hatching, beside a corner of a box. */
-static int makes_a_detour(const Search *s, const Chain *way) {
-    int n = way->parts;
-    for (int run = 1; run <= 2 && run < n; run++)
-        for (int k = 0; k < n; k++) {
-            int before = way->links[(k + n - 1) % n] ^ 1, after = way->links[(k + run) % n], last = before;
-            double ink = 0, path = 0;
-            for (int j = k; j < k + run; j++) {
-                int from = way->links[j % n];
-                ink += s->length[from];
-                path += apart_by(s, last, from) + apart_by(s, from, from ^ 1);
-                last = from ^ 1;
-            }
-            if (ink < LITTLE * way->ink && path + apart_by(s, last, after) > DETOUR * apart_by(s, before, after))
-                return 1;
-        }
-    return 0;
-}
-
 /* Keep a way around if it is the tightest of its pieces. */
 static void keep(Search *s, const Chain *way, double gaps) {
     Chain chain = *way;
@@ -127,8 +101,8 @@ static int may_follow(const Search *s, const Chain *way, int piece) {
  * many those are. */
 static int extend(Search *s, const Chain *way, Chain *longer, int count) {
     int start = way->links[0], last = way->links[way->parts - 1] ^ 1;
-    double closing = apart_by(s, last, start);
-    if (way->gaps + closing <= LOOSE * way->ink && !makes_a_detour(s, way)) keep(s, way, way->gaps + closing);
+    double closing = hypot(s->at[2 * last] - s->at[2 * start], s->at[2 * last + 1] - s->at[2 * start + 1]);
+    if (way->gaps + closing <= LOOSE * way->ink) keep(s, way, way->gaps + closing);
     if (way->parts == MOST_PARTS) return 0;
     s->ends[s->asked++] = last;
     if (s->count[last] == UNKNOWN) look_around(s, last);
