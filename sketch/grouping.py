@@ -20,8 +20,6 @@ MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length
 MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
 MOST_OPEN = 5  # and of those with wide gaps, which are many in a tangle
 WIDE = 0.1  # of a chain's ink
-# of its length, what the ends of a ring are apart; of its extent, half of its thickness: what is thinner is a rod
-RING = (0.2, 0.2)
 PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
@@ -39,21 +37,10 @@ HEAD_SIZE = 2.0  # and as large as it is
 def closing_chains(page: Page, start: int) -> list[tuple[float, Chain]]:
     """Orders of pieces whose ends meet around, of which `start` is the first drawn, each set of pieces in its
     tightest order, the tightest first: its gaps, as a share of its ink, and the order."""
-    found = [t for t in page.chains(start) if not _has_ring(page, t)]
-    tightest = sorted(found, key=lambda t: t[0] / t[1] + PART * len(t[2]))
+    tightest = sorted(page.chains(start), key=lambda t: t[0] / t[1] + PART * len(t[2]))
     close = sum(gaps <= WIDE * ink for gaps, ink, _ in tightest)
     wide = MOST_CHAINS if page.rivals else MOST_OPEN
     return [(gaps / ink, chain) for gaps, ink, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]
-
-
-def _has_ring(page: Page, closed: tuple[float, float, Chain]) -> bool:
-    """Whether one of several pieces is a ring that hardly lacks anything, and the others are longer: a pivot where bars
-    meet, which they do not close."""
-    _, ink, chain = closed
-    return any(
-        ink > 2 * p.length and p.gap < RING[0] * p.length and p.scale > RING[1] * p.extent
-        for p in (page.pieces[i] for i, _ in chain)
-    )
 
 
 def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
