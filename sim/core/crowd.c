@@ -9,8 +9,8 @@ static const double MANY = 0.35;         /* of the bodies that move */
 static const double SUBSTEP = 1.0 / 240; /* [s]: the longest substep */
 static const double FALL = 1.0 / 24;     /* of the time in which a body falls by its own reach: likewise */
 static const double SHORTER = 1.0 / 16;  /* of the longest: the shortest */
-static const int32_t FIRST_PASSES = 2; /* before the first look for new contacts, which are then solved with the rest */
-static const int32_t PASSES = 6; /* between other looks, at most */
+static const int32_t FIRST_PASSES = 1; /* before the first look for new contacts, which are then solved with the rest */
+static const int32_t PASSES = 5; /* between other looks, at most */
 static const int32_t LOOKS = 6; /* of a substep, at most */
 
 /* The longest substep: what is strongly pulled, or small, does not go farther in it than others do for their size. */
@@ -110,6 +110,7 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
         if (gap_foresee(rows, mover, crowd->active, crowd->active_count, dt)) found = true;
     }
     if (status != SIM_OK) return status;
+    if (heated) rows_hold(rows, mover, dt);
     move(crowd, dt);
     if (crowd->pivots.count > 0) find_pressed(crowd);
     pivots_join(&crowd->pivots, mover, 1 / dt, crowd->pressed);
@@ -165,6 +166,7 @@ static int begin(Crowd *crowd, World *world, double length, double h) {
         crowd->touched[crowd->pivots.pivot[i].a] = crowd->touched[crowd->pivots.pivot[i].b] = true;
     pivots_factor(&crowd->pivots, crowd->mover);
     gap_limit(crowd->rows.contact, crowd->rows.count, crowd->mover, h);
+    rows_link(&crowd->rows, 0);
     for (int32_t i = 0; i < world->body_count; i++) crowd->part[i] = part_of(world, i);
     crowd->length = crowd->left = length;
     crowd->open = true;

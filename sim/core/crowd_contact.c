@@ -83,8 +83,11 @@ void contact_add(Crowd *crowd, const World *world, const Near *near, const Manif
     int32_t i = crowd->rows.count++;
     Contact *c = &crowd->rows.contact[i];
     bool moves_a = crowd->mover[near->a].inverse_mass > 0, moves_b = crowd->mover[near->b].inverse_mass > 0;
-    crowd->rows.ends[i] = (Ends){near->a, near->b, KIND_OPEN,
-                                 moves_a, moves_b, contact_is_uneven(&crowd->mover[near->a], &crowd->mover[near->b])};
+    crowd->rows.ends[i] = (Ends){.a = near->a,
+                                 .b = near->b,
+                                 .moves_a = moves_a,
+                                 .moves_b = moves_b,
+                                 .uneven = contact_is_uneven(&crowd->mover[near->a], &crowd->mover[near->b])};
     c->a = near->a;
     c->b = near->b;
     c->lightens = false;

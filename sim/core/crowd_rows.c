@@ -4,6 +4,9 @@
  * friction: Coulomb's cone).  Contacts are rigid: soft ones sag under a pile by its load over their stiffness.  Overlap is
  * taken out of the positions themselves (crowd_gap.c), never by velocities: a jam gains no energy from it.
  *
+ * Between bodies on which others press a row applies a little more than it lacks (successive over-relaxation, Young 1954; of
+ * clamped rows, Cryer 1971): a blow goes through a pile in fewer passes.  A contact alone is solved at once.
+ *
  * What a contact does next cannot be foretold: it presses or not, slides or not.  A processor that guesses loses more time
  * than a row takes, so rows choose by arithmetic.
  */
@@ -15,11 +18,14 @@
 #include "broad.h"
 #include "sim.h"
 
+static const double OVER = 1.3; /* times what a normal row lacks that it applies then */
+
 int rows_create(Rows *rows, int32_t mover_count) {
     *rows = (Rows){.mover_count = mover_count, .hot = calloc(3 * (size_t)mover_count, sizeof *rows->hot)};
     rows->whirls = rows->hot ? rows->hot + mover_count : NULL;
     rows->was = rows->hot ? rows->hot + 2 * mover_count : NULL;
-    return rows->hot ? SIM_OK : SIM_OUT_OF_MEMORY;
+    rows->contacts = calloc((size_t)mover_count, sizeof *rows->contacts);
+    return rows->hot && rows->contacts ? SIM_OK : SIM_OUT_OF_MEMORY;
 }
 
 int rows_room(Rows *rows, int32_t count) {
@@ -47,6 +53,7 @@ void rows_destroy(Rows *rows) {
     free(rows->bounce);
     free(rows->list);
     free(rows->hot);
+    free(rows->contacts);
     *rows = (Rows){0};
 }
 
@@ -105,6 +112,20 @@ static inline double tangent_speed(const Contact *c, const Meeting *m) {
     return v + m->spin_b * c->spin_tb - m->spin_a * c->spin_ta;
 }
 
+void rows_link(Rows *rows, int32_t from) {
+    if (from == 0) memset(rows->contacts, 0, (size_t)rows->mover_count * sizeof *rows->contacts);
+    for (int32_t i = from; i < rows->count; i++) {
+        rows->contacts[rows->ends[i].a]++;
+        rows->contacts[rows->ends[i].b]++;
+    }
+    for (int32_t i = 0; i < rows->count; i++) {
+        Ends *ends = &rows->ends[i];
+        bool others_a = !ends->moves_a || rows->contacts[ends->a] > 1;
+        bool others_b = !ends->moves_b || rows->contacts[ends->b] > 1;
+        ends->between = others_a && others_b && !ends->uneven;
+    }
+}
+
 void rows_measure(Rows *rows, int32_t from, const Mover *mover, double threshold) {
     int32_t count = 0;
     if (from == 0) rows->bounce_count = 0;
@@ -160,10 +181,10 @@ static inline void finish(Contact *c, Meeting *m, double tangent, double change,
 /* x, if it is more than 0; else 0.  What a processor cannot guess it shall not try to. */
 static inline double no_pull(double x) { return 0.5 * (x + fabs(x)); }
 
-/* All rows of a contact of one point. Returns the change of the point's velocity by its own impulse. */
-static inline double solve_one(Contact *c, Meeting *m) {
+/* All rows of a contact of one point, the normal one by `over` times what it lacks. Returns the change of the point's velocity by its own impulse. */
+static inline double solve_one(Contact *c, Meeting *m, double over) {
     double had = c->impulse_n[0];
-    double sum = no_pull(had - c->mass_n[0] * (point_speed(c, 0, m) - c->limit[0]));
+    double sum = no_pull(had - over * c->mass_n[0] * (point_speed(c, 0, m) - c->limit[0]));
     double change = sum - had;
     c->impulse_n[0] = sum;
     finish(c, m, tangent_speed(c, m) + change * c->cross[0], change, c->spin_na[0] * change, c->spin_nb[0] * change,
@@ -173,7 +194,7 @@ static inline double solve_one(Contact *c, Meeting *m) {
 
 /* Both normal rows of a contact at once, so that neither end of a box goes first: the linear complementarity problem of two
  * rows by its four cases (Catto's Box2D); then the rest. Returns the larger change of a point's velocity by its own impulse. */
-static inline double solve_pair(Contact *c, Meeting *m) {
+static inline double solve_pair(Contact *c, Meeting *m, double over) {
     Two k = c->mobility, k12 = both(c->coupling), had = c->impulse_n, none = {0, 0};
     /* what the velocities would be, beyond the limits, without the impulses so far */
     Two free = pair_speed(c, m) - c->limit - k * had - k12 * swapped(had);
@@ -183,6 +204,7 @@ static inline double solve_pair(Contact *c, Meeting *m) {
     fits &= ~(Mask){0, fits[0]}; /* the first point alone, else the second */
     pressed &= (Mask){pressed[1], pressed[0]};
     impulse = (Two)((pressed & (Mask)impulse) | (~pressed & fits & (Mask)alone));
+    impulse = positive(had + both(over) * (impulse - had));
     Two change = impulse - had;
     c->impulse_n = impulse;
     finish(c, m, tangent_speed(c, m) + sum_of(change * c->cross), sum_of(change), sum_of(c->spin_na * change),
@@ -208,6 +230,16 @@ static double solve_in_turn(Contact *c, Meeting *m) {
     return larger(first, second);
 }
 
+/* All rows of a contact. Returns the larger change of a point's velocity by its own impulse. */
+static inline double solve(Contact *c, int32_t kind, Mover *a, Mover *b, double over) {
+    Meeting m = meet(a, b);
+    double change = kind == KIND_ONE    ? solve_one(c, &m, over)
+                    : kind == KIND_PAIR ? solve_pair(c, &m, over)
+                                        : solve_in_turn(c, &m);
+    leave(&m, a, b);
+    return change;
+}
+
 bool rows_solve(Rows *rows, Mover *mover, double dt, bool all) {
     bool *was = rows->was, *hot = rows->hot, heated = false;
     memcpy(was, hot, (size_t)rows->mover_count * sizeof *was);
@@ -218,18 +250,30 @@ bool rows_solve(Rows *rows, Mover *mover, double dt, bool all) {
         if (!(all | was[ends->a] | was[ends->b] | hot[ends->a] | hot[ends->b])) continue;
         if (ends->kind == KIND_OPEN) continue;
         Contact *c = &rows->contact[i];
-        Mover *a = &mover[ends->a], *b = &mover[ends->b];
-        Meeting m = meet(a, b);
-        double change = ends->kind == KIND_ONE    ? solve_one(c, &m)
-                        : ends->kind == KIND_PAIR ? solve_pair(c, &m)
-                                                  : solve_in_turn(c, &m);
-        leave(&m, a, b);
+        double change = solve(c, ends->kind, &mover[ends->a], &mover[ends->b], ends->between ? OVER : 1);
         bool noticed = change * dt > c->fine;
         hot[ends->a] |= noticed & ends->moves_a;
         hot[ends->b] |= noticed & ends->moves_b;
         heated |= noticed;
     }
     return heated;
+}
+
+void rows_hold(Rows *rows, Mover *mover, double dt) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < rows->count; i++) {
+        const Ends *ends = &rows->ends[i];
+        rows->list[count] = i;
+        count += !(ends->moves_a & ends->moves_b) & (ends->kind != KIND_OPEN);
+    }
+    for (int32_t k = 0; k < count; k++) {
+        int32_t i = rows->list[k];
+        Contact *c = &rows->contact[i];
+        Mover *a = &mover[c->a], *b = &mover[c->b];
+        Meeting m = meet(a, b);
+        Two gap = gap_now(c, a, b) + both(dt) * pair_speed(c, &m);
+        if (gap[0] < -c->slack || (c->count > 1 && gap[1] < -c->slack)) solve(c, rows->ends[i].kind, a, b, 1);
+    }
 }
 
 void rows_bounce(Rows *rows, Mover *mover) {

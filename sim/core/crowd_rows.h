@@ -36,6 +36,7 @@ typedef struct Ends {
     uint8_t kind;
     bool moves_a, moves_b; /* the two have finite masses */
     bool uneven;           /* and very different ones */
+    bool between;          /* others press on both of them: on each body that moves there is another contact */
 } Ends;
 
 /* What the passes read comes first: it is what the cache holds.  The points of a contact lie on one line, along which they
@@ -88,6 +89,7 @@ typedef struct Rows {
     bool *hot, *was; /* by mover: something changed it noticeably in this pass or since the last, and before */
     bool *whirls; /* by mover: it turns fast; of what does not take part in the frame it is false */
     int32_t mover_count;
+    int32_t *contacts; /* by mover: how many it has */
     int32_t *list; /* of contacts, to be gone through */
     int32_t *stale; /* contacts whose bodies have turned or shifted a good deal since their points were found */
     int32_t stale_count;
@@ -122,6 +124,9 @@ void rows_weigh(Rows *rows, const Mover *mover);
 
 /* Solving for velocities (crowd_rows.c); `from`: the first contact that it is for. */
 
+/* Once for each contact of a frame: which of all are between bodies that have others. */
+void rows_link(Rows *rows, int32_t from);
+
 /* Once for each contact of a substep, before it is solved: how fast points that are about to touch approach; those that do
  * faster than the threshold are to bounce. */
 void rows_measure(Rows *rows, int32_t from, const Mover *mover, double threshold);
@@ -131,6 +136,10 @@ void rows_warm_start(Rows *rows, int32_t from, Mover *mover);
 
 /* One pass, to all contacts or to those of hot bodies only.  Whether it made any body hot. */
 bool rows_solve(Rows *rows, Mover *mover, double dt, bool all);
+
+/* What the passes left unsolved is to show among what moves, not as a way through what stands: contacts with that, once more,
+ * if they would go in far. */
+void rows_hold(Rows *rows, Mover *mover, double dt);
 void rows_bounce(Rows *rows, Mover *mover);
 
 /* Gaps and overlaps (crowd_gap.c). */

@@ -179,9 +179,12 @@ void touch_refresh(Crowd *crowd, World *world, double left) {
         Contact *c = &crowd->rows.contact[crowd->rows.stale[i]];
         Near near = {
             .piece_a = (int32_t)(c->key >> 32), .piece_b = (int32_t)(c->key & 0xffffffffu), .a = c->a, .b = c->b};
-        Manifold m;
-        near_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b,
-                      near_closing(crowd, near_rate(crowd, &near), left) + c->slack, &m);
+        double margin = near_closing(crowd, near_rate(crowd, &near), left) + c->slack;
+        Manifold m = {.gap = 0};
+        do { /* what is on its way out now may be knocked back: it keeps a point at least */
+            margin = larger(margin, m.gap + c->slack);
+            near_manifold(crowd, world, near.piece_a, near.piece_b, c->a, c->b, margin, &m);
+        } while (m.count == 0 && m.gap > margin);
         Record old = contact_record(c);
         contact_set_points(crowd, world, c, &m, &old);
         gap_limit(c, 1, crowd->mover, crowd->substep);
@@ -270,6 +273,7 @@ int touch_near(Crowd *crowd, World *world, double left, double substep, double t
     *found = crowd->rows.count > before;
     if (!*found) return SIM_OK;
     gap_limit(crowd->rows.contact + before, crowd->rows.count - before, crowd->mover, substep);
+    rows_link(&crowd->rows, before);
     rows_measure(&crowd->rows, before, crowd->mover, threshold);
     rows_warm_start(&crowd->rows, before, crowd->mover);
     return SIM_OK;

@@ -318,6 +318,26 @@ def test_a_stray_does_not_go_through_its_neighbours(crowd):
     assert run.positions[:, :2, 0].min() > -6
 
 
+@pytest.mark.parametrize("elasticity", [0.0, 0.5, 1.0])
+def test_nothing_is_squeezed_out_of_a_thin_box(crowd, elasticity):
+    """A ball up to 800 times as heavy as the other drives that into walls of 2 mm, at up to 2000 m/s."""
+    rng = np.random.default_rng(6)
+    walls = [
+        box("left", -6, 0, 0.002, 4, anchored=True), box("right", 2, 0, 0.002, 4, anchored=True),
+        box("top", -2, 2, 8, 0.002, anchored=True), box("bottom", -2, -2, 8, 0.002, anchored=True),
+    ]  # fmt: skip
+    for _ in range(80):
+        at, speed, density = (
+            rng.uniform([-5, -0.1], [-2, 0.1]),
+            10 ** rng.uniform(1.5, 3.3),
+            10 ** rng.uniform(0, 2.5),
+        )
+        shot = ball("shot", *at, 0.3, velocity=[speed, 0], density=density)
+        hit = ball("hit", 0, 0, rng.uniform(0.1, 0.3))
+        run = crowd(scene(*walls, shot, hit, gravity=(0, 0), elasticity=elasticity), 0.3)
+        assert (np.abs(run.positions[:, 4:] - (-2, 0)) < (4, 2)).all()
+
+
 def test_a_near_miss_is_not_a_hit(crowd):
     """A fast ball that passes a corner with a hair between keeps its way."""
     s = scene(box("b", 3, -1, 2, 2, anchored=True), ball("a", 0, 0.11, 0.1, velocity=[40, 0]), gravity=(0, 0))
