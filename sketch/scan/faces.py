@@ -41,11 +41,15 @@ def _standing(sheet: Sheet, stretches: Stretches) -> list[Way]:
         return []
     outlines = [outline for f in found if (outline := sheet.outline({f})).strain < CUT]
     near = [stretches.beside(outline.points) for outline in outlines]
-    return [
-        Way(outline.points, {name: stretches.ink[name] for name in sorted(near[k] - lent)}, outline.strain)
-        for k, outline in enumerate(outlines)
-        for lent in _lent(near, k)
-    ]
+    cut = frozenset[int]().union(*(edges for outline in outlines for edges in outline.cut))
+    names = {e: stretches.at(sheet.middle(e)) for e in cut}
+    out = []
+    for k, outline in enumerate(outlines):
+        for lent in _lent(near, k):
+            strain = outline.strain_without({e for e, name in names.items() if name in lent})
+            ink = {name: stretches.ink[name] for name in sorted(near[k] - lent)}
+            out.append(Way(outline.points, ink, strain))
+    return out
 
 
 def _lent(near: list[frozenset[int]], k: int) -> list[frozenset[int]]:

@@ -42,12 +42,14 @@ def _beyond(points: Points, distance: NDArray[Any], pen: float) -> Points:
     """Where a way may go on from its last point on, under ink, shape (n, 2), a point a pixel; empty where it cannot."""
     end = points[-1]
     _, back = heading(points[::-1], end, pen, SIGHT * pen)
+    (x, y), (dx, dy), count = end.tolist(), back.tolist(), 0
+    while _is_ink(distance, x - (count + 1) * dx, y - (count + 1) * dy):
+        count += 1
+    count = count - round(ROUND * pen)
+    steps = np.arange(1, count + 1 if count > ROUND * pen else 1)
+    return np.asarray(end - steps[:, None] * back)
+
+
+def _is_ink(distance: NDArray[Any], x: float, y: float) -> bool:
     height, width = distance.shape
-    steps = np.arange(1, int(np.hypot(height, width)))
-    ahead = end - steps[:, None] * back
-    x, y = np.round(ahead).astype(int).T
-    on = (x >= 0) & (y >= 0) & (x < width) & (y < height)
-    on[on] = distance[y[on], x[on]] > 0
-    count = int(np.argmin(on)) if not on.all() else len(on)
-    count -= round(ROUND * pen)
-    return np.asarray(ahead[: count if count > ROUND * pen else 0])
+    return 0 <= round(y) < height and 0 <= round(x) < width and bool(distance[round(y), round(x)] > 0)

@@ -56,13 +56,22 @@ class Face:
 class Outline:
     """The longest way around some faces.
 
-    points: [pixels], closed, shape (n, 2).  lines: the edges along it that are more than crumbs.  strain: of the lines
-    that would have to end at its corners [rad²].
+    points: [pixels], closed, shape (n, 2).  lines: the edges along it that are more than crumbs.  cut: at each corner
+    those of its edges that go straight on there, and would have to end.
     """
 
     points: Points
     lines: frozenset[int]
-    strain: float
+    cut: tuple[frozenset[int], ...]
+
+    @property
+    def strain(self) -> float:
+        """Of the lines that would have to end at its corners [rad²]."""
+        return self.strain_without(frozenset())
+
+    def strain_without(self, lent: Set[int]) -> float:
+        """The same where some of its edges are lent to it: another's line goes on, if its own do not cross it there."""
+        return sum(ends_cost(len(edges)) for edges in self.cut if not edges <= lent)
 
 
 class Sheet:
@@ -79,7 +88,7 @@ class Sheet:
         bounding = _bounding(edges)
         self.pen = pen
         self._way: dict[int, Points] = {}
-        self._cut: dict[tuple[int, ...], float] = {}
+        self._cut: dict[tuple[int, ...], frozenset[int]] = {}
         self.length: dict[int, float] = {}
         leaving: dict[int, list[tuple[float, int]]] = {}
         for e, edge in enumerate(edges):
@@ -150,6 +159,11 @@ class Sheet:
         if others:
             into.sides = [h for h in into.sides if self.face[h ^ 1] != one]
 
+    def middle(self, edge: int) -> Points:
+        """The place half along an edge, shape (2,)."""
+        way = self._way[2 * edge]
+        return np.asarray(way[len(way) // 2])
+
     def is_thin(self, face: Face) -> bool:
         around = sum(self.length[h >> 1] for h in face.sides)
         return 2 * face.area < SLIVER * self.pen * around
@@ -173,25 +187,26 @@ class Sheet:
             if (area := abs(_area(points))) > most:
                 outer, around, most = loop, points, area
         lines = frozenset(h >> 1 for h in outer if self.length[h >> 1] > SHORT * self.pen)
-        return Outline(np.concatenate([around, around[:1]]), lines, self._strain(outer))
+        return Outline(np.concatenate([around, around[:1]]), lines, self._ends(outer))
 
-    def _strain(self, outer: list[int]) -> float:
-        """What it costs that an outline turns where lines go straight on that then have to end there [rad²]."""
+    def _ends(self, outer: list[int]) -> tuple[frozenset[int], ...]:
+        """Where an outline turns and lines go straight on that then have to end there: which of its edges these are."""
         long = [k for k, h in enumerate(outer) if self.length[h >> 1] > SHORT * self.pen]
-        total = 0.0
+        out = []
         for k, after in pairwise([*long, long[0] + len(outer)] if long else []):
             corner = tuple(outer[n % len(outer)] for n in range(k, after + 1))
             if corner not in self._cut:
                 self._cut[corner] = self._cut_at(corner)
-            total += self._cut[corner]
-        return total
+            if self._cut[corner]:
+                out.append(self._cut[corner])
+        return tuple(out)
 
-    def _cut_at(self, corner: tuple[int, ...]) -> float:
+    def _cut_at(self, corner: tuple[int, ...]) -> frozenset[int]:
         """The same for one corner. corner: the half-edges that lead around it, the first and the last being long."""
         back, ahead = self._leaving(corner[0] ^ 1), self._leaving(corner[-1])
         turn = _turn(back, ahead)
         if turn <= SMOOTH:
-            return 0.0
+            return frozenset()
         own = {h >> 1 for h in corner}
         # of two lines that part hardly further than the pen is wide, either goes straight on
         along = self._thin_beside(corner[0]) | self._thin_beside(corner[-1])
@@ -202,8 +217,10 @@ class Sheet:
             if other >> 1 not in own and self.length[other >> 1] > STUB * self.pen
             if along.isdisjoint(self._thin_beside(other))
         ]
-        ends = [min((_turn(here, other) for other in others), default=turn) for here in (back, ahead)]
-        return ends_cost(sum(end < SMOOTH for end in ends))
+        ends = (corner[0], back), (corner[-1], ahead)
+        return frozenset(
+            h >> 1 for h, here in ends if min((_turn(here, other) for other in others), default=turn) < SMOOTH
+        )
 
     def _thin_beside(self, h: int) -> set[int]:
         """The thin faces beside an edge."""

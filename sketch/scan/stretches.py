@@ -24,12 +24,23 @@ class Stretches:
 
     def __init__(self, ink: Ink, pen: float) -> None:
         self.ink, self._pen = ink, pen
+        self._all, self._whose = (
+            np.empty(0, complex),
+            np.empty(0, np.intp),
+        )  # all places, once they are asked for
         some = [points[:: len(points) // PLACES + 1] for points in ink.values()]
         counts = np.array([len(points) for points in some], dtype=np.intp)
         self._first = np.cumsum(counts) - counts
         self._counts = counts
         self._names = np.array(list(ink), dtype=np.intp)
         self._at = np.round(np.concatenate([np.empty((0, 2)), *some])).astype(np.intp)
+
+    def at(self, place: Points) -> int:
+        """The one on which a place is, or that is the nearest to it."""
+        if not len(self._all):
+            self._all = np.concatenate(list(self.ink.values())).view(complex)[:, 0]
+            self._whose = np.repeat(self._names, [len(points) for points in self.ink.values()])
+        return int(self._whose[int(np.abs(self._all - complex(*place.tolist())).argmin())])
 
     def beside(self, outline: Points) -> frozenset[int]:
         """Those that run along an outline, shape (n, 2)."""

@@ -16,6 +16,7 @@ from sketch.scan import read_picture
 from sketch.scan.binding import thin, trace
 from sketch.scan.faces import standing
 from sketch.scan.graph import Graph, build_graph
+from sketch.scan.outlines import ends_cost
 from sketch.scan.overlaps import overlapping
 from sketch.scan.rings import find_rings
 from sketch.scan.sheet import Sheet, bridged
@@ -146,3 +147,14 @@ def test_a_face_is_a_body_where_its_sides_end_at_a_base_but_not_where_they_cross
     graph, _ = looked_at([BASE, sides])
     found = standing([Sheet(graph.edges, [], PEN)], ink_of(graph))
     assert any(abs(way.points[:, 1].min() - 220) < PEN for way in found) == offered
+
+
+@pytest.mark.parametrize(("low", "crossings"), [(300.0, 0), (315.0, 1)], ids=["end there", "cross"])
+def test_a_base_that_is_lent_is_not_cut_short_but_where_a_side_crosses_it(low: float, crossings: int) -> None:
+    sides = np.array([(200.0, low), (200, 220), (380, 220), (380, 300)])
+    graph, _ = looked_at([BASE, sides])
+    (base,) = (k for k, edge in enumerate(graph.edges) if 170 < edge.length < 190)
+    found = standing([Sheet(graph.edges, [], PEN)], ink_of(graph))
+    box = {base in way.ink: way.strain for way in found if way.points[:, 1].max() < 310}
+    assert box[False] == crossings * ends_cost(2)
+    assert box[True] == crossings * ends_cost(2) + (2 - crossings) * ends_cost(1)
