@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sketch.kernel import beside, depth
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
+from sketch.writing import LARGEST, WRITTEN
 
 __all__ = ["Context", "Pick"]
 
@@ -30,6 +31,7 @@ SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no 
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.25  # of a bar's extent: as near as the strokes of a letter are
 LETTER = 0.15  # of the page: larger bars are no letter
+ROUGH = 20.0  # nats that a small polygon in several strokes leaves to be said about its ink, and is a letter by itself
 DENSE = 64  # points of an open line that are compared with others, or so
 TWIG = 0.04  # of what is drawn: an open line, or an arrow, that is shorter is a slip too
 DOT = 0.012  # of what is drawn: nobody draws a smaller body
@@ -100,6 +102,8 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
         extent = row[4]
         if c.closed and extent < DOT * drawn:  # where the pen rested
             gains[k] -= 0.5 * (math.log(DOT * drawn / max(extent, 1e-9)) / DOT_SPREAD) ** 2
+        if c.rough > ROUGH and len(c.pieces) > 1 and extent < LARGEST * drawn:
+            gains[k] -= WRITTEN
         if c.kind == "cross":
             large = extent > LETTER * size  # nobody writes an X so large: two rods
             gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY * (1 + large)

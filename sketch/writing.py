@@ -14,7 +14,7 @@ from sketch.pieces import Page, Piece
 from sketch.proposals import Proposed
 from sketch.scoring import Fitted
 
-__all__ = ["written"]
+__all__ = ["LARGEST", "WRITTEN", "written"]
 
 Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
@@ -23,7 +23,6 @@ Rows = dict[int, set[int]]  # of each small stroke those that mean nothing in th
 WRITTEN = (
     60.0  # nats that another thing in a row is likelier a letter, for each stroke there that means nothing
 )
-ROUGH = 20.0  # nats that a small polygon in several strokes leaves to be said about its ink, and is a letter by itself
 LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
 BETWEEN = 1.0  # of the larger one's extent: what is between the strokes of a word, or of two, at most
 UNLIKE = 4.0  # times that strokes of one word are as large as others: a letter's bar, and its stem
@@ -44,40 +43,39 @@ def written(
     told: the gains of all that is proposed.  likely: which of it the ink makes likely.
     """
     chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in likely]
+    # an X loses by its surroundings where no body is
+    crosses = {c for (c, gain), (p, k) in zip(chosen, likely, strict=True) if gain < proposed[p].gains[k]}
+    idle = page.pieces.keys() - {
+        i for c, _ in chosen if c.kind != "bar" and not (c.kind == "cross" and c in crosses) for i in c.pieces
+    }
+    if not idle:
+        return told
     marks = _Marks([c for c, _ in chosen], LARGEST * page.drawn)
-    letters = [(c, gain) for c, gain in chosen if marks.may_be_written(c)]
-    idle = page.pieces.keys() - {i for c, _ in chosen if c.kind != "bar" for i in c.pieces}
-    idle |= {i for c, _ in letters if c.kind == "cross" for i in c.pieces}
-    rows = Rows()
     small = {i: p for i, p in page.pieces.items() if p.extent < marks.largest}
-    while idle:
+    while True:
         rows = _rows(page, small, idle)
-        lost = {i for c, gain in letters if gain < _loss(page, rows, c) for i in c.pieces}
+        lost = {
+            i
+            for c, gain in chosen
+            if not rows.keys().isdisjoint(c.pieces) and gain < marks.loss(page, rows, c)
+            for i in c.pieces
+        }
         if lost <= idle:
             break
         idle |= lost
     lone = [page.pieces[i] for i in sorted(idle)]
     lines = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
-    measured = {i for bar in lines for i in _measured(page, bar, lone)}
+    measured = {i for bar in lines if idle.issuperset(bar.pieces) for i in _measured(page, bar, lone)}
+    touched = rows.keys() | measured
     out = list(told)
     for n, p in enumerate(proposed):
-        for k, (c, gain) in enumerate(zip(p.candidates, told[n], strict=True)):
-            if gain <= 0:
-                continue
-            loss = 0.0
-            if (
-                p.rows[k][4] < marks.largest
-                and not rows.keys().isdisjoint(c.pieces)
-                and marks.may_be_written(c)
-            ):
-                loss = _loss(page, rows, c)
-            if c.kind == "bar" and not measured.isdisjoint(c.pieces):
-                loss += MEASURE
-            if c.rough > ROUGH and len(c.pieces) > 1 and p.rows[k][4] < marks.largest:
-                loss += WRITTEN
-            if loss:
-                out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
-                own[k] -= loss
+        if touched.isdisjoint(p.alone.pieces):
+            continue
+        own = out[n] = list(told[n])
+        for k, c in enumerate(p.candidates):
+            if own[k] > 0 and not touched.isdisjoint(c.pieces):
+                own[k] -= marks.loss(page, rows, c)
+                own[k] -= MEASURE * (c.kind == "bar" and not measured.isdisjoint(c.pieces))
     return out
 
 
@@ -90,42 +88,51 @@ class _Marks:
 
     def __init__(self, likely: Sequence[Fitted], largest: float) -> None:
         self.largest = largest
-        self._bodies = [(c, _extent(c)) for c in likely if c.closed]
-        rings = [c for c, extent in self._bodies if c.kind == "circle" and extent < largest]
-        self._pins = [(c, under[0]) for c in rings if len(under := self._under(c)) == 1]
+        self._bodies = [c for c in likely if c.closed]
+        self._boxes = np.array(
+            [[*c.outline.min(axis=0), *c.outline.max(axis=0)] for c in self._bodies]
+        ).reshape(-1, 4)
+        self._extents = np.hypot(*(self._boxes[:, 2:] - self._boxes[:, :2]).T)
 
-    def may_be_written(self, c: Fitted) -> bool:
-        """Whether it is small, and no arrow, X on a body, or pivot: of two bodies, or the only one of its body."""
-        if c.kind == "arrow" or _extent(c) > self.largest:
-            return False
-        under = self._under(c)
+    def loss(self, page: Page, rows: Rows, c: Fitted) -> float:
+        """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in."""
+        beside = set[int]().union(*(rows.get(i, ()) for i in c.pieces)).difference(c.pieces)
+        if not beside or c.kind == "arrow":
+            return 0.0
+        extent = _extent(c)
+        said = WRITTEN * sum(extent < TALL * page.pieces[i].extent for i in beside)
+        return said if said and extent < self.largest and self._may_be_written(c, extent) else 0.0
+
+    def _may_be_written(self, c: Fitted, extent: float) -> bool:
+        """Whether it is no X on a body, and no pivot: of two bodies, or the only one of its body."""
+        under = self._under(c, extent)
         if not under or c.kind not in ("circle", "cross"):
             return True
-        others = (pin for pin, body in self._pins if body is under[0] and pin.pieces != c.pieces)
-        return c.kind == "circle" and len(under) == 1 and any(others)
+        return c.kind == "circle" and len(under) == 1 and self._is_pinned_again(under[0], c)
 
-    def _under(self, c: Fitted) -> list[Fitted]:
+    def _is_pinned_again(self, body: Fitted, c: Fitted) -> bool:
+        """Whether another small ring than c lies over a body and no other."""
+        low, high = body.outline.min(axis=0), body.outline.max(axis=0)
+        middles = (self._boxes[:, :2] + self._boxes[:, 2:]) / 2
+        near = (self._extents < self.largest) & ((middles > low) & (middles < high)).all(axis=1)
+        rings = (self._bodies[k] for k in np.flatnonzero(near).tolist())
+        return any(
+            ring.kind == "circle" and ring.pieces != c.pieces and self._under(ring, _extent(ring)) == [body]
+            for ring in rings
+        )
+
+    def _under(self, c: Fitted, extent: float) -> list[Fitted]:
         """The bodies of other ink, that are larger, that its middle is over."""
-        (x, y), least = c.middle, OVER * _extent(c)
-        return [
-            b
-            for b, extent in self._bodies
-            if extent > least and set(c.pieces).isdisjoint(b.pieces) and depth(x, y, b.outline) < 0
-        ]
+        at = np.array(c.middle)
+        near = (self._boxes[:, :2] < at).all(axis=1) & (self._boxes[:, 2:] > at).all(axis=1)
+        near &= self._extents > OVER * extent
+        bodies = (self._bodies[k] for k in np.flatnonzero(near).tolist())
+        return [b for b in bodies if set(c.pieces).isdisjoint(b.pieces) and depth(*c.middle, b.outline) < 0]
 
 
 def _extent(c: Fitted) -> float:
     """The diagonal of a reading's bounding box [pixels]."""
     return math.dist(c.outline.min(axis=0), c.outline.max(axis=0))
-
-
-def _loss(page: Page, rows: Rows, c: Fitted) -> float:
-    """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in."""
-    beside = set[int]().union(*(rows.get(i, ()) for i in c.pieces)).difference(c.pieces)
-    if not beside:
-        return 0.0
-    wide = _extent(c)
-    return WRITTEN * sum(wide < TALL * page.pieces[i].extent for i in beside)
 
 
 def _rows(page: Page, small: dict[int, Piece], idle: Collection[int]) -> Rows:
