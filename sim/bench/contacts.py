@@ -139,6 +139,31 @@ def _train() -> Case:
     return Case("train", "four wheels on a slope: more contacts than it needs", scene, 2.5, truth)
 
 
+def _sled() -> Case:
+    """Three round feet pinned to a frame slide down a slope: however they share the load, a = g (sin - mu cos)."""
+    slope, mu, feet = 0.4, 0.2, (-0.5, 0.0, 0.5)
+
+    def at(k: float, height: float) -> tuple[float, float]:
+        x, y = along(slope, np.array(k), height)
+        return float(x), float(y)
+
+    def truth(t: Array) -> Array:
+        s = G / 2 * (math.sin(slope) - mu * math.cos(slope)) * t**2
+        return poses(
+            (*along(slope, s, 0.2), -slope), *((*along(slope, s + k, 0.1), 0.0) for k in feet), times=t
+        )
+
+    frame = make_box("a", (1.2, 0.2), at(0.0, 0.2), angle=-slope, mass=2.0)
+    disks = [make_disk(n, 0.1, at(k, 0.1), mass=0.3, friction=mu) for n, k in zip("bcd", feet, strict=True)]
+    joints = [
+        Joint(bodies=("a", n), position=at(k + aside, 0.13))
+        for n, k in zip("bcd", feet, strict=True)
+        for aside in (-0.02, 0.02)
+    ]
+    scene = make_scene([make_ground(slope, friction=mu), frame, *disks], joints)
+    return Case("sled", "three feet slide: more contacts than it needs", scene, 1.5, truth)
+
+
 def _over_a_joint() -> Case:
     """A block slides from one slab on to another, flush with it, and stops as it would on one."""
     mu, v, tilt = 0.3, 3.0, 0.17
@@ -281,6 +306,7 @@ CONTACTS: list[Case] = [
     _two_lifted(),
     _on_a_wheel(),
     _train(),
+    _sled(),
     _over_a_joint(),
     _skips(),
     _up_a_step(),

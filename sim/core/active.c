@@ -205,7 +205,7 @@ static Block fill(const Active *active, int32_t i, Block *lower, Block *upper) {
 }
 
 /* Whether no contact slides against friction: then F = J, and the matrix is symmetric. */
-static bool is_symmetric(const System *system) {
+bool active_is_symmetric(const System *system) {
     for (int32_t k = 0; k < system->contact_count; k++) {
         const Contact *c = &system->contact[k];
         if (c->active && c->slide != 0 && c->friction > 0) return false;
@@ -225,7 +225,7 @@ static Block invert(Block left, Block own, Condition *worst) {
 
 /* LU without pivoting within the profile. */
 Condition active_factor(Active *active, const System *system, double relax) {
-    bool symmetric = is_symmetric(system);
+    bool symmetric = active_is_symmetric(system);
     Condition worst = SOUND;
     for (int32_t i = 0; i < active->count; i++) {
         int32_t first = active->first[i];

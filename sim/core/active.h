@@ -61,6 +61,9 @@ static inline Row *active_row(const Active *active, const System *system, int32_
     return active->holds[i] ? &system->row[2 * active->pair[i / 2] + (i & 1)] : NULL;
 }
 
+/* Whether no contact slides against friction: then F = J, and the matrix is symmetric. */
+bool active_is_symmetric(const System *system);
+
 /* Factor the matrix of the system as it is placed; `relax` makes rows solvable that say what others have said. */
 Condition active_factor(Active *active, const System *system, double relax);
 

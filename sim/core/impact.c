@@ -405,7 +405,7 @@ int find_modes(ContactSolver *solver, System *s, const Slack *slack, double *acc
         const Row *along = contact_row(s, k) + 1;
         double slipping = fabs(row_acceleration(along, acceleration));
         double none = 1e-12 * (f[0] * row_coupling(s, along, along) + 1e-3 * vlength(s->world->gravity));
-        if (c->slide == 0 && c->friction > 0 && fabs(f[1]) >= c->friction * f[0] * (1 - 1e-9) && slipping > none)
+        if (c->slide == 0 && c->friction > 0 && fabs(f[1]) >= c->friction * f[0] * (1 - 1e-6) && slipping > none)
             c->slide = f[1] < 0 ? 1 : -1; /* against friction, also where it hardly slips yet */
     }
     return SIM_OK;

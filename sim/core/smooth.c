@@ -59,7 +59,7 @@ static void find_softness(Smooth *s, const System *system) {
 static Condition factor(Smooth *s, const System *system) {
     Condition condition = active_factor(&s->active, system, s->relax);
     if (condition != REDUNDANT || s->relax > 0) return condition;
-    s->relax = RELAX;
+    s->relax = active_is_symmetric(system) ? RELAX : RELAX_MORE;
     return active_factor(&s->active, system, s->relax);
 }
 
