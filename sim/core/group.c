@@ -10,6 +10,7 @@
 #define MOST_CONTACTS 10       /* of a group in motion: beyond that the crowd is cheaper */
 #define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
 #define UNFELT 0.1             /* of the speed that is unsure: what friction may do too much or too little */
+#define ROUNDED 1e-11          /* of the scene's size: gaps of what flies are known to that */
 #define CHATTER 40.0           /* events that a body had lately: contacts that take turns would go on to */
 #define MOST_RETURNS 4         /* times that lifts are held at an event and the rest looked at again */
 
@@ -72,6 +73,12 @@ int group_spread(Exact *e, int32_t first, double time) {
     return SIM_OK;
 }
 
+/* Whether a gap that is small enough to count as closed closes later, surely: where flights are known to rounding, so is that. */
+static bool closes_later(const Exact *e, int32_t a, int32_t b, const Gap *gap) {
+    bool known = e->track[a].motion.degree <= 2 && e->track[b].motion.degree <= 2;
+    return known && gap->gap > ROUNDED * e->world->size && gap->rate < -e->slack.unsure;
+}
+
 static int find_contacts(Exact *e) {
     System *g = &e->group;
     static const State still = {0};
@@ -81,6 +88,7 @@ static int find_contacts(Exact *e) {
             int status = touching_pair(e, g->member[i], &g->state[i], other, j == i ? &still : &g->state[j], &count);
             for (int32_t k = 0; k < count && status == SIM_OK; k++) {
                 const Touching *t = &e->touching[k];
+                if (closes_later(e, g->member[i], other, &t->gap)) continue;
                 const Shape *a = &e->world->shape[t->feature.shape_a], *b = &e->world->shape[t->feature.shape_b];
                 /* held where it is: lifting it out would feed energy to a body that rocks on the spot */
                 double hold = fmin(t->gap.gap, e->slack.gap);

@@ -39,6 +39,21 @@ def test_coarse_is_cheaper_than_fine(name: str) -> None:
     assert evaluations[0] < evaluations[1] < evaluations[2] < 4 * evaluations[0]
 
 
+def test_a_break_is_the_same_at_every_tolerance() -> None:
+    """Balls a tenth of a millimetre apart are not struck at once, however coarse the tolerance: flights are exact."""
+    spots = [(0.17329 * row, 0.10005 * (2 * j - row)) for row in range(4) for j in range(row + 1)]
+    rack = [
+        Body(id=f"b{k}", shape=Circle(0.1), position=at, friction=0.2, elasticity=0.9)
+        for k, at in enumerate(spots)
+    ]
+    cue = Body(
+        id="cue", shape=Circle(0.1), position=(-1.0, 0.013), velocity=(5.0, 0.0), friction=0.2, elasticity=0.9
+    )
+    scene = Scene(bodies=[cue, *rack], gravity=(0, 0))
+    coarse, fine = (simulate(scene, duration=0.7, tolerance=t) for t in (1e-3, 1e-8))
+    assert np.abs(coarse.positions - fine.positions).max() < 1e-9
+
+
 def test_energy_of_a_frictionless_machine_is_kept() -> None:
     case = BY_NAME["triple pendulum"]
     run = simulate(case.scene, duration=case.duration, tolerance=1e-7)
