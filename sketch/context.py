@@ -31,6 +31,8 @@ SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no 
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.4  # of a bar's extent: as near as the strokes of a letter are
 LETTER = 0.15  # of the page: larger bars are no letter
+TAP = 0.1  # of a bar's extent: what is smaller beside it is no stroke of a letter
+LARGE = 0.22  # of the page: a larger X is two rods that cross
 ROUGH = 20.0  # nats that a small polygon in several strokes leaves to be said about its ink, and is a letter by itself
 DENSE = 64  # points of an open line that are compared with others, or so
 TWIG = 0.04  # of what is drawn: an open line, or an arrow, that is shorter is a slip too
@@ -105,7 +107,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
         if c.rough > ROUGH and len(c.pieces) > 1 and extent < LARGEST * drawn:
             gains[k] -= WRITTEN
         if c.kind == "cross":
-            large = extent > LETTER * size  # nobody writes an X so large: two rods
+            large = extent > LARGE * size
             gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY * (1 + large)
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
@@ -166,7 +168,7 @@ def _letters(proposed: list[Proposed], likely: list[Pick], largest: float, known
         for (left, top, _, bottom, wide), other in bars[a + 1 :]:
             if left > x1 + NEAR_BY * longest:
                 break
-            if not set(c.pieces).isdisjoint(other.pieces):
+            if not set(c.pieces).isdisjoint(other.pieces) or min(extent, wide) < TAP * max(extent, wide):
                 continue
             reach = NEAR_BY * max(extent, wide)
             if left > x1 + reach or top > y1 + reach or bottom < y0 - reach:

@@ -33,6 +33,7 @@ __all__ = ["Box", "Proposals", "Proposed", "Row", "proposing"]
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
 CLOSED = 0.04  # of its ink, what is missing at most of an outline that needs no other ink
 MEANT = 4.0  # nats that a reading is to save: less would be luck, as so many are tried
+THINNEST = 1.001 * LEAST_AXIS  # of the page: outlines that are no wider were judged as wider than they are
 LITTLE = 0.2  # of an outline's scale: pieces whose distance from it is compared with their own
 HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less than that for it
 
@@ -127,7 +128,7 @@ class Proposals:
         before = self.page.size
         changed = self.page.settle()
         again = {i for i in changed if i in self._alone}
-        thin = 1.001 * LEAST_AXIS * max(before, self.page.size) if before != self.page.size else 0.0
+        thin = THINNEST * max(before, self.page.size) if before != self.page.size else 0.0
         again |= {i for i, a in self._alone.items() if _thin(a.outlines, thin)}
         for i in again:
             self._forget(i)
@@ -198,6 +199,8 @@ class Proposals:
             else:
                 key = tuple(i for i, _ in chain), tuple(back for _, back in chain)
                 found = fitted(key, partial(_read_chain, page, chain))
+            if len(chain) == 2 and _thin(found, THINNEST * page.size):
+                continue  # a line that was drawn twice
             if _closes(min(found, key=lambda f: f.cost), self._said(tuple(group))):
                 whole.append((gap, group))
             out += found
