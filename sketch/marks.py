@@ -14,6 +14,8 @@ from sketch.pieces import Array, Page, Piece
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
 
 __all__ = [
+    "ASIDE",
+    "LIFT",
     "line_of_any_course",
     "read_arrows",
     "read_bar",

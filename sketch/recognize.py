@@ -27,6 +27,7 @@ from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
 from sketch.kernel import depth
+from sketch.marks import ASIDE, LIFT
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page
 from sketch.placing import Placed, placed
@@ -193,7 +194,8 @@ class Recognizer:
                 there = gains, part([c.pieces for c in p.candidates], gains)
             self._parts[p] = there
         best = self._together.best([self._parts[p][1] for p in proposed])
-        return proposed, told, _one_a_place([(proposed[p].candidates[k], told[p][k]) for p, k in best])
+        chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in best]
+        return proposed, told, _whole_arrows(_one_a_place(chosen))
 
 
 def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> list[Proposed]:
@@ -236,6 +238,46 @@ def _one_a_place(chosen: list[tuple[Fitted, float]]) -> list[tuple[Fitted, float
         pieces = tuple(sorted((*kept[0].pieces, *other[0].pieces)))
         chosen[k] = replace(kept[0], pieces=pieces), kept[1] + other[1]
     return [chosen[k] for k in range(len(chosen)) if k not in joined]
+
+
+def _whole_arrows(chosen: list[tuple[Fitted, float]]) -> list[tuple[Fitted, float]]:
+    """The chosen and their gains, with arrows that were gone over joined, and shafts from which the pen was lifted.
+
+    That is known of the pair, and so after the search, as of bodies.
+    """
+    arrows = [t for t in chosen if t[0].kind == "arrow"]
+    others = [t for t in chosen if t[0].kind != "arrow"]
+    whole: list[tuple[Fitted, float]] = []
+    for arrow, gain in sorted(arrows, key=lambda t: -t[1]):
+        for k, (kept, its) in enumerate(whole):
+            apart = np.hypot(*(arrow.outline - kept.outline).T).max()
+            if apart < SAME_PLACE * math.dist(*kept.outline.tolist()):
+                whole[k] = replace(kept, pieces=tuple(sorted((*kept.pieces, *arrow.pieces)))), its + gain
+                break
+        else:
+            whole.append((arrow, gain))
+    for k, (arrow, gain) in enumerate(whole):
+        for bar in [t for t in others if t[0].kind == "bar" and len(t[0].outline) == 2]:
+            tail = _tail_beyond(arrow, bar[0])
+            if tail is not None:
+                others.remove(bar)
+                pieces = tuple(sorted((*arrow.pieces, *bar[0].pieces)))
+                longer = replace(arrow, pieces=pieces, outline=np.array([tail, arrow.outline[1]]))
+                whole[k] = longer, gain + bar[1]
+                break
+    return others + whole
+
+
+def _tail_beyond(arrow: Fitted, bar: Fitted) -> Array | None:
+    """The far end of a bar that goes on where an arrow's shaft begins, in line with it."""
+    tail, tip = arrow.outline
+    near, far = sorted(bar.outline, key=lambda end: math.dist(end, tail))
+    shaft, whole = tip - tail, tip - far
+    long = float(np.hypot(*whole))
+    off = abs(whole[0] * shaft[1] - whole[1] * shaft[0]) / max(float(np.hypot(*shaft)), 1e-9)
+    along = float((near - far) @ whole) / long
+    goes_on = math.dist(near, tail) < LIFT * long and along > 0 and np.hypot(*shaft) < long
+    return far if goes_on and off < ASIDE * long else None
 
 
 def _same_place(a: Fitted, b: Fitted) -> bool:
