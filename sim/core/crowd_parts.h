@@ -113,8 +113,17 @@ void range_destroy(Crowd *crowd);
 void range_place(Crowd *crowd, const World *world, int32_t body);
 void range_start(Crowd *crowd, const World *world, int32_t body, double dt);
 void range_widen(Crowd *crowd, const World *world, int32_t body, double left);
-bool range_left(const Crowd *crowd, int32_t body, double dt);
 Box range_swept(const Crowd *crowd, Box box, int32_t body);
+
+/* Whether the body will be out of its range in dt, at its present velocity. */
+static inline bool range_left(const Crowd *crowd, int32_t body, double dt) {
+    const Mover *m = &crowd->mover[body];
+    const Range *range = &crowd->range[body];
+    Two to = two(m->moved) + both(dt) * two(m->velocity), low = two(range->low) - to, high = to - two(range->high);
+    double room = range->room - smaller(fabs(m->turned) + fabs(m->spin) * dt, 2.0) * crowd->body_swing[body];
+    Mask out = (Mask)(low > both(room)) | (Mask)(high > both(room));
+    return (out[0] | out[1]) != 0 || room < 0;
+}
 
 /* crowd_near.c */
 /* How far a near pair is apart at least, as the bodies have moved since it was looked at. */

@@ -127,13 +127,3 @@ void range_widen(Crowd *crowd, const World *world, int32_t body, double left) {
     widen(crowd, world, body, left);
     sweep(crowd, world, body);
 }
-
-/* Whether the body will be out of its range in dt, at its present velocity. */
-bool range_left(const Crowd *crowd, int32_t body, double dt) {
-    const Mover *m = &crowd->mover[body];
-    const Range *range = &crowd->range[body];
-    Two to = two(m->moved) + both(dt) * two(m->velocity), low = two(range->low) - to, high = to - two(range->high);
-    double room = range->room - smaller(fabs(m->turned) + fabs(m->spin) * dt, 2.0) * crowd->body_swing[body];
-    Mask out = (Mask)(low > both(room)) | (Mask)(high > both(room));
-    return (out[0] | out[1]) != 0 || room < 0;
-}

@@ -353,13 +353,33 @@ static int handle_touch(Exact *e, int32_t body, double time, bool *crowded) {
     return status;
 }
 
+/* Mark the bodies that something is near or that may hang on a joint: all others are by themselves. */
+static int search_neighbours(Exact *e, double time) {
+    int32_t n = e->world->body_count;
+    for (int32_t i = 1; i < n; i++) {
+        e->searched[i] = is_tracked(e, i);
+        Vec at = e->searched[i] ? motion_position(&e->track[i].motion, time) : vec(INFINITY, INFINITY);
+        e->box[i] = box_grow((Box){at, at}, e->world->body[i].reach + e->slack.gap);
+    }
+    int status = sweep_pairs(&e->sweep, e->box, e->searched);
+    for (int32_t i = 1; i < n; i++) e->searched[i] = e->world->joint_count > 0;
+    for (int32_t k = 0; k < e->sweep.pair_count && status == SIM_OK; k++)
+        e->searched[e->sweep.pair[k].a] = e->searched[e->sweep.pair[k].b] = true;
+    return status;
+}
+
 /* Look at the bodies that have just been given to the exact way: what touches, what rests, what moves how. */
 static int take_up(Exact *e, double time) {
     int32_t n = e->world->body_count;
+    int status = search_neighbours(e, time);
+    if (status != SIM_OK) return status;
     for (int32_t i = 1; i < n; i++) {
         if (!e->fresh[i] || e->world->body[i].mode != MODE_SMOOTH) continue;
         system_clear(&e->group);
-        int status = group_gather(e, i, time);
+        if (e->searched[i])
+            status = group_gather(e, i, time);
+        else
+            group_add(e, i, time);
         for (int32_t k = 0; k < e->group.count; k++) e->fresh[e->group.member[k]] = false;
         if (status == SIM_OK) status = group_reform(e, time);
         if (status != SIM_OK) return status;
