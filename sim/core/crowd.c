@@ -11,6 +11,7 @@ static const double FALL = 1.0 / 24;     /* of the time in which a body falls by
 static const double SHORTER = 1.0 / 16;  /* of the longest: the shortest */
 static const int32_t FIRST_PASSES = 1; /* before the first look for new contacts, which are then solved with the rest */
 static const int32_t PASSES = 5; /* between other looks, at most */
+static const int32_t UNEVEN_PASSES = 30; /* likewise, where masses are very different */
 static const int32_t LOOKS = 6; /* of a substep, at most */
 
 /* The longest substep: what is strongly pulled, or small, does not go farther in it than others do for their size. */
@@ -95,12 +96,13 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     int status = SIM_OK;
     touch_refresh(crowd, world, left);
     accelerate(crowd, world, dt);
-    rows_weigh(rows, mover);
+    bool uneven = rows_weigh(rows, mover);
     rows_measure(rows, 0, mover, threshold);
+    if (uneven) rows_note(rows, mover);
     rows_warm_start(rows, 0, mover);
     bool found = true, heated = true; /* new contacts, and bodies that are still to give on what they got */
     for (int32_t look = 0; (found || (heated && look == 1)) && look < LOOKS && status == SIM_OK; look++) {
-        int32_t passes = look == 0 ? FIRST_PASSES : PASSES;
+        int32_t passes = look == 0 ? FIRST_PASSES : uneven ? UNEVEN_PASSES : PASSES;
         heated = true;
         for (int32_t pass = 0; heated && pass < passes; pass++) {
             pivots_solve(&crowd->pivots, mover);
@@ -110,6 +112,7 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
         if (gap_foresee(rows, mover, crowd->active, crowd->active_count, dt)) found = true;
     }
     if (status != SIM_OK) return status;
+    if (uneven) rows_temper(rows, mover, threshold);
     if (heated) rows_hold(rows, mover, dt);
     move(crowd, dt);
     if (crowd->pivots.count > 0) find_pressed(crowd);

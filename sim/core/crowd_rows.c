@@ -25,7 +25,8 @@ int rows_create(Rows *rows, int32_t mover_count) {
     rows->whirls = rows->hot ? rows->hot + mover_count : NULL;
     rows->was = rows->hot ? rows->hot + 2 * mover_count : NULL;
     rows->contacts = calloc((size_t)mover_count, sizeof *rows->contacts);
-    return rows->hot && rows->contacts ? SIM_OK : SIM_OUT_OF_MEMORY;
+    rows->before = calloc((size_t)mover_count, sizeof *rows->before);
+    return rows->hot && rows->contacts && rows->before ? SIM_OK : SIM_OUT_OF_MEMORY;
 }
 
 int rows_room(Rows *rows, int32_t count) {
@@ -54,6 +55,7 @@ void rows_destroy(Rows *rows) {
     free(rows->list);
     free(rows->hot);
     free(rows->contacts);
+    free(rows->before);
     *rows = (Rows){0};
 }
 
@@ -154,6 +156,35 @@ void rows_warm_start(Rows *rows, int32_t from, Mover *mover) {
         push_pair(c, &m, c->impulse_n);
         push_tangent(c, &m, c->impulse_t);
         leave(&m, a, b);
+    }
+}
+
+void rows_note(Rows *rows, const Mover *mover) {
+    memcpy(rows->before, mover, (size_t)rows->mover_count * sizeof *mover);
+}
+
+void rows_temper(Rows *rows, Mover *mover, double slow) {
+    double work = 0, square = 0, fast = 0; /* the energy changes by share * work + share^2 * square / 2 */
+    for (int32_t i = 0; i < rows->mover_count; i++) {
+        const Mover *m = &mover[i], *before = &rows->before[i];
+        if (m->inverse_mass == 0) continue;
+        fast +=
+            (vdot(m->velocity, m->velocity) - slow * slow) / m->inverse_mass + m->spin * m->spin / m->inverse_moment;
+        Vec gain = vsub(m->velocity, before->velocity);
+        double turn = m->spin - before->spin;
+        work += vdot(before->velocity, gain) / m->inverse_mass + before->spin * turn / m->inverse_moment;
+        square += vdot(gain, gain) / m->inverse_mass + turn * turn / m->inverse_moment;
+    }
+    if (work + 0.5 * square <= 0 || fast <= 0) return;
+    double share = larger(0, -work / square);
+    for (int32_t i = 0; i < rows->mover_count; i++) {
+        const Mover *before = &rows->before[i];
+        mover[i].velocity = vmad(before->velocity, share, vsub(mover[i].velocity, before->velocity));
+        mover[i].spin = before->spin + share * (mover[i].spin - before->spin);
+    }
+    for (int32_t i = 0; i < rows->count; i++) {
+        rows->contact[i].impulse_n *= both(share);
+        rows->contact[i].impulse_t *= share;
     }
 }
 

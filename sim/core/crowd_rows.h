@@ -90,6 +90,7 @@ typedef struct Rows {
     bool *whirls; /* by mover: it turns fast; of what does not take part in the frame it is false */
     int32_t mover_count;
     int32_t *contacts; /* by mover: how many it has */
+    Mover *before; /* the movers as they were noted */
     int32_t *list; /* of contacts, to be gone through */
     int32_t *stale; /* contacts whose bodies have turned or shifted a good deal since their points were found */
     int32_t stale_count;
@@ -120,7 +121,7 @@ static inline Two positive(Two x) { return (Two)((Mask)x & (Mask)(x > both(0)));
  * and, once for each contact of a substep, before it is measured, which are to count. */
 bool contact_is_uneven(const Mover *a, const Mover *b);
 void contact_weigh(Contact *contact, Ends *ends, const Mover *a, const Mover *b);
-void rows_weigh(Rows *rows, const Mover *mover);
+bool rows_weigh(Rows *rows, const Mover *mover); /* whether any are of very different masses */
 
 /* Solving for velocities (crowd_rows.c); `from`: the first contact that it is for. */
 
@@ -133,6 +134,12 @@ void rows_measure(Rows *rows, int32_t from, const Mover *mover, double threshold
 
 /* Once for each contact of a substep: the impulses of the substep before. */
 void rows_warm_start(Rows *rows, int32_t from, Mover *mover);
+
+/* Where masses are very different the impulses of before, which are those of another moment, may throw bodies farther than the
+ * passes take back.  If all that has been applied since the movers were noted added energy, only the share of it is left that
+ * takes the most. */
+void rows_note(Rows *rows, const Mover *mover);
+void rows_temper(Rows *rows, Mover *mover, double slow);
 
 /* One pass, to all contacts or to those of hot bodies only.  Whether it made any body hot. */
 bool rows_solve(Rows *rows, Mover *mover, double dt, bool all);

@@ -54,9 +54,11 @@ void contact_weigh(Contact *c, Ends *ends, const Mover *a, const Mover *b) {
     ends->kind = KIND_PAIR;
 }
 
-void rows_weigh(Rows *rows, const Mover *mover) {
+bool rows_weigh(Rows *rows, const Mover *mover) {
+    bool any = false;
     for (int32_t i = 0; i < rows->count; i++) {
         if (!rows->ends[i].uneven) continue;
+        any = true;
         Contact *c = &rows->contact[i];
         const Mover *a = &mover[c->a], *b = &mover[c->b];
         double of_a = vdot(c->normal, a->velocity), of_b = -vdot(c->normal, b->velocity);
@@ -66,4 +68,5 @@ void rows_weigh(Rows *rows, const Mover *mover) {
         c->lightens = lightens;
         contact_weigh(c, &rows->ends[i], a, b);
     }
+    return any;
 }
