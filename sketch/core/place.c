@@ -18,7 +18,7 @@ static const double BEYOND = 15.0;  /* times as far out as half of the ink is of
 static const double CLOSE = 0.05;  /* if it is off by more than this share of the outline's size */
 static const double MEDIAN = 0.01; /* of the outline's size: distances below count by their squares */
 static const double WITHIN = 0.4;  /* of a side has hull beyond it: less than half, as hands run past corners */
-static const double STILL = 2e-4; /* of the outline's size: what moves no farther is in its place */
+static const double STILL = 1e-4; /* of the outline's size: what moves no farther is in its place */
 /* What lies over a corner is as near to either of its sides: it goes with the one that it is less beyond. */
 static const double BESIDE = 1e-6;
 static const double ASTRAY = 0.5;  /* of the outline's size: a corner that moves farther is no placing any more */

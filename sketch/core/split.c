@@ -187,12 +187,12 @@ void split_bounds(const Split *s, int k, int cut[SIDES + 1]) {
 
 void corner(const Line *a, const Line *b, const double end[2], const double begin[2], double out[2]) {
     double mx = 0.5 * (end[0] + begin[0]), my = 0.5 * (end[1] + begin[1]);
-    double gap = hypot(end[0] - begin[0], end[1] - begin[1]);
+    double gap = length(end[0] - begin[0], end[1] - begin[1]);
     double sine = a->dx * b->dy - a->dy * b->dx;
     if (fabs(sine) > 0.1) {
         double t = ((b->x - a->x) * b->dy - (b->y - a->y) * b->dx) / sine;
         double x = a->x + t * a->dx, y = a->y + t * a->dy;
-        if (hypot(x - mx, y - my) <= 2.5 * gap) { /* otherwise the lines meet far from the ink */
+        if (length(x - mx, y - my) <= 2.5 * gap) { /* otherwise the lines meet far from the ink */
             out[0] = x;
             out[1] = y;
             return;

@@ -117,3 +117,16 @@ def test_a_body_lies_where_it_lies_whichever_way_it_was_drawn(name: str) -> None
         forth, back = (read(ink).readings[0].outline for ink in (strokes, [s[::-1] for s in strokes]))
         assert len(forth) == len(back)
         assert nearest(back, [tuple(corner) for corner in forth]) < 0.03
+
+
+@pytest.mark.parametrize(
+    "corners", [box(400, 300, 240, 110, 0.3), box(400, 300, 40, 140), ngon(3, 400, 300, 110)]
+)
+def test_it_does_not_matter_where_on_an_outline_the_pen_begins(corners: list[tuple[float, float]]) -> None:
+    for seed in range(4):
+        tremor = np.random.default_rng(seed).normal(0, 2, (120, 2))
+        ink = ring(corners, 121)[:-1] + (tremor + np.roll(tremor, 1, axis=0) + np.roll(tremor, 2, axis=0)) / 3
+        for first in range(0, 120, 5):
+            for drawn in (np.roll(ink, first, axis=0), np.roll(ink, first, axis=0)[::-1]):
+                found = read([drawn]).readings
+                assert [len(r.outline) for r in found] == [len(corners)], (seed, first)

@@ -1,0 +1,51 @@
+/* What the round readings of a closed outline and its polygons have in common. */
+#ifndef SKETCH_OUTLINE_H
+#define SKETCH_OUTLINE_H
+
+#include "fit.h"
+
+static const double PI = 3.14159265358979323846;
+static const double TREMOR = 0.045; /* spread of ink about what was meant, in the frame: a share of the radius */
+static const double SLOPPY = 0.1;   /* nobody's ink is off by much more than this */
+static const double RETRACE = 1.0;  /* nats an observation of ink that was drawn already */
+
+/* A closed chain of ink in its frame, and how its distances from a reading count. */
+typedef struct {
+    const double *factor; /* of each sample, by its part's own size */
+    double cap2;          /* squared distances count up to this */
+    double length;        /* of the ink */
+    double observations;  /* independent ones, that it is worth */
+    double side;          /* nats to say one more side */
+    double lacks[2 * SAMPLES]; /* how far the pen was lifted on the way from the first sample, twice around */
+    double hopeless;      /* a first split that costs more [nats] is not looked into further */
+} Ink;
+
+/* A polygon over the ink's samples: its sides are the runs bounded by `cut`, counted from `start`; corner q is where side q
+ * begins. Of outlines that are drawn long `stretch` says how much so. */
+typedef struct {
+    const Runs *runs;
+    double stretch[2], stiffness;
+    int k, start, cut[SIDES + 1];
+    Line side[SIDES];
+    double cost, square; /* nats to say the ink, given it, and the mean squared distance */
+} Polygon;
+
+/* Nats to say the ink's distances from an outline: Student's t for the tremor, unknown but about TREMOR, and a normal prior
+ * on how careless people are. */
+static inline double misfit(double mean_square, double observations) {
+    return 0.5 * observations * (log1p(mean_square / (TREMOR * TREMOR)) + mean_square / (SLOPPY * SLOPPY));
+}
+
+/* Nats to say that ink runs along the outline more often than once. */
+static inline double retraced(const Ink *ink, double perimeter) {
+    return RETRACE * ink->observations * fmax(1 - perimeter / fmax(ink->length, 1e-9), 0);
+}
+
+/* The best polygons of 3 .. SIDES sides over samples in their frame; of cost infinite where there is none. Of them keeps
+ * `square` and `longer`, which hold the samples as they are and, where `stretch` is not 1, drawn longer. */
+void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon found[SIDES + 1]);
+
+/* A polygon's corners, (k, 2), in the frame. */
+void polygon_corners(const Polygon *p, double *corners);
+
+#endif
