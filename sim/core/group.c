@@ -9,7 +9,7 @@
 #define FIRST_STEP 0.05 /* tried by the integrator [s], of bodies that have taken none */
 #define MOST_CONTACTS 10       /* of a group in motion: beyond that the crowd is cheaper */
 #define MOST_CONTACTS_REST 160 /* of a group that may be found at rest */
-#define UNFELT 0.1             /* of the speed that is unsure: what friction may do too much or too little */
+#define UNFELT 0.5             /* of the speed that is unsure: what friction may do too much or too little */
 #define ROUNDED 1e-11          /* of the scene's size: gaps of what flies are known to that */
 #define CHATTER 40.0           /* events that a body had lately: contacts that take turns would go on to */
 #define MOST_RETURNS 4         /* times that lifts are held at an event and the rest looked at again */
