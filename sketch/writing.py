@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sketch.kernel import depth
 from sketch.pieces import Page, Piece
-from sketch.proposals import Proposed
+from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
 
 __all__ = ["LARGEST", "WRITTEN", "written"]
@@ -50,7 +50,7 @@ def written(
     }
     if not idle:
         return told
-    marks = _Marks([c for c, _ in chosen], LARGEST * page.drawn)
+    marks = _Marks(chosen, [proposed[p].rows[k] for p, k in likely], LARGEST * page.drawn)
     small = {i: p for i, p in page.pieces.items() if p.extent < marks.largest}
     while True:
         rows = _rows(page, small, idle)
@@ -86,13 +86,12 @@ class _Marks:
         largest: of what is written [pixels].
     """
 
-    def __init__(self, likely: Sequence[Fitted], largest: float) -> None:
+    def __init__(self, likely: Sequence[tuple[Fitted, float]], rows: Sequence[Row], largest: float) -> None:
+        """rows: where those that are likely lie, as of `Proposed`."""
         self.largest = largest
-        self._bodies = [c for c in likely if c.closed]
-        self._boxes = np.array(
-            [[*c.outline.min(axis=0), *c.outline.max(axis=0)] for c in self._bodies]
-        ).reshape(-1, 4)
-        self._extents = np.hypot(*(self._boxes[:, 2:] - self._boxes[:, :2]).T)
+        self._bodies = [c for c, _ in likely if c.closed]
+        where = np.array([row for (c, _), row in zip(likely, rows, strict=True) if c.closed]).reshape(-1, 5)
+        self._boxes, self._extents = where[:, :4], where[:, 4]
 
     def loss(self, page: Page, rows: Rows, c: Fitted) -> float:
         """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in."""
