@@ -144,6 +144,15 @@ def test_a_pile_is_no_deeper_where_it_is_pulled_harder(crowd, pull):
     assert max(depth(s, run, f) for f in (60, 90, 120, 180)) < 0.004
 
 
+@pytest.mark.parametrize(("count", "deepest"), [(10, 0.006), (20, 0.009)])
+def test_a_blow_goes_through_a_falling_column(crowd, count, deepest):
+    """From a metre high: the lowest box stops, and with it, in the same few substeps, all that are above it."""
+    s = scene(GROUND, *(box(f"b{i}", 0, 1.5 + 1.0001 * i) for i in range(count)), elasticity=0)
+    run = crowd(s, 2, fps=240)
+    tops = run.positions[:, :, 1] + (1.0, *[0.5] * count)
+    assert (tops[:, :-1] - (run.positions[:, 1:, 1] - 0.5)).max() < deepest
+
+
 @pytest.mark.parametrize("elasticity", [0.0, 1.0])
 @pytest.mark.parametrize("ratio", [10.0, 100.0, 1e4, 1e6])
 def test_a_light_body_gives_a_heavy_one_no_more_than_it_has(crowd, ratio, elasticity):
