@@ -130,7 +130,8 @@ def _enlarged(image: Image, by: int, shape: tuple[int, ...], way: int) -> Image:
 
 
 def _less_stains(light: Image, small: Image, reduced: int) -> Image:
-    """Light without what stains take of it: they are wider than a line, as fills are, but without an edge.
+    """Light without what stains and tints take of it: they are wider than a line, as fills are, but without an edge,
+    or with one that is darker than they.
 
     reduced: pixels of the picture, each way, to a pixel of these.
     """
@@ -138,7 +139,8 @@ def _less_stains(light: Image, small: Image, reduced: int) -> Image:
 
     square = np.ones((3, 3), np.uint8)
     line = 2 * max(round(STAIN * small.size**0.5), 2) + 1
-    wide = cv2.morphologyEx(cv2.subtract(light, small), cv2.MORPH_OPEN, np.ones((line, line), np.uint8))
+    less = cv2.subtract(light, small)
+    wide = cv2.morphologyEx(less, cv2.MORPH_OPEN, np.ones((line, line), np.uint8))
     dark = (wide * np.uint16(255) > LEAST_CONTRAST * light.astype(np.uint16)).view(np.uint8)
     if not dark.any():
         return light
@@ -149,10 +151,11 @@ def _less_stains(light: Image, small: Image, reduced: int) -> Image:
     level = np.zeros(count)
     np.maximum.at(level, labels[dark > 0].astype(np.intp), wide[dark > 0])
     at = labels[rim > 0]
-    step = np.bincount(at, steps[rim > 0], count) / np.maximum(np.bincount(at, minlength=count), 1)
-    soft = step < SOFT * level
-    soft[0] = False
-    stain = cv2.blur(wide * cv2.dilate(soft[labels].astype(np.uint8), square), (3, 3))
+    around = np.maximum(np.bincount(at, minlength=count), 1)
+    step, edge = (np.bincount(at, of[rim > 0], count) / around for of in (steps, cv2.dilate(less, near)))
+    stains = (step < SOFT * level) | (edge > (1 + SOFT) * level)
+    stains[0] = False
+    stain = cv2.blur(wide * cv2.dilate(stains[labels].astype(np.uint8), square), (3, 3))
     return np.asarray(cv2.subtract(light, stain))
 
 
