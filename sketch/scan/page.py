@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import crests, crisp_ink, darkness, distances, link, pieces
-from sketch.scan.quantiles import percentile
+from sketch.scan.quantiles import median, percentile
 from sketch.scan.ruling import FEWEST, drop_ruling
 from sketch.scan.table import TABLE, closed, darkest_channel, find_sheet
 
@@ -29,6 +29,7 @@ LIGHT_PIXELS = 120_000  # light is looked at on a picture reduced to this many
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line
 FINGER_MARK = 0.08  # likewise, the largest shadow or nail that is seen of a finger on the sheet
 DARK_BOARD = 110  # of 255
+COLOURED = 1.25  # times the light in its darkest channel that paper has in its brightest
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
@@ -83,8 +84,13 @@ def read_page(picture: Image) -> Page:
     if negative:
         colours = 255 - colours
         small = darkest_channel(colours)
-    light, edge = closed(small, WIDEST_LINE), None
     paper, around = find_sheet(colours)
+    white = None if negative else _balance(colours, paper)
+    if white is not None:  # a red pen is hardly darker than yellow paper where that is darkest
+        picture, colours = np.asarray(cv2.LUT(picture, white)), np.asarray(cv2.LUT(colours, white))
+        before, small = small, darkest_channel(colours)
+        around = around * (float(small.mean()) / max(float(before.mean()), 1.0))
+    light, edge = closed(small, WIDEST_LINE), None
     if paper is not None:
         # on the sheet, what is dark all over is filled: it has the light of the paper around it
         light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
@@ -102,6 +108,20 @@ def read_page(picture: Image) -> Page:
     for strip in (dark[:rim], dark[-rim:], dark[:, :rim], dark[:, -rim:]):
         strip[...] = 0
     return Page(dark, _noise(dark, paper, reduced), edge)
+
+
+def _balance(colours: Image, paper: Image | None) -> Image | None:
+    """For each channel what its values become where paper is grey, shape (256, 1, 3); None where it nearly is.
+
+    The channel in which the paper is darkest is left out: it shows its noise rather than ink.
+    """
+    some = colours[::3, ::3] if paper is None else colours[::3, ::3][paper[::3, ::3] > 0]
+    colour = np.array([max(median(some[..., c]), 1.0) for c in range(3)]) if some.size else np.ones(3)
+    if colour.max() < COLOURED * colour.min():
+        return None
+    table = np.clip(np.arange(256)[:, None, None] * (colour.max() / colour) + 0.5, 0, 255).astype(np.uint8)
+    table[:, :, int(colour.argmin())] = 255
+    return table
 
 
 def _reduced(picture: Image, by: int) -> Image:
