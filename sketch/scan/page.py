@@ -119,9 +119,9 @@ def _balance(colours: Image, paper: Image | None) -> Image | None:
     colour = np.array([max(median(some[..., c]), 1.0) for c in range(3)]) if some.size else np.ones(3)
     if colour.max() < COLOURED * colour.min():
         return None
-    table = np.clip(np.arange(256)[:, None, None] * (colour.max() / colour) + 0.5, 0, 255).astype(np.uint8)
+    table = np.clip(np.arange(256)[:, None, None] * (colour.max() / colour) + 0.5, 0, 255)
     table[:, :, int(colour.argmin())] = 255
-    return table
+    return np.asarray(table, np.uint8)
 
 
 def _reduced(picture: Image, by: int) -> Image:

@@ -44,7 +44,7 @@ class Paper:
         scale: pixels of the picture for one of the drawing.
         pen, color, cover: the pen's width, its colour, and how much of the paper it hides, 0 to 1.
         grain: how much of a pencil's graphite the paper's grain leaves out, 0 to 1.
-        filled: whether bodies are filled in.
+        filled: whether bodies are filled in.  tint: how much of the paper the fill hides, as a share of the ink.
         sheet: colour of the paper.  texture: its unevenness [grey levels].
         ruled, squared: distance of printed lines, or 0; ruling: their colour; ruling_width [pixels of the picture].
         behind: how dark the other side of the sheet shows through, 0 to 1.
@@ -63,6 +63,7 @@ class Paper:
     cover: float = 0.92
     grain: float = 0.0
     filled: bool = False
+    tint: float = 1.0
     sheet: Color = (238, 240, 241)
     texture: float = 2.0
     ruled: float = 0.0
@@ -103,6 +104,8 @@ PAPERS: dict[str, Paper] = {
     "marker": replace(PHOTO, pen=7.0, color=(45, 40, 190)),
     "yellow-green pen": replace(PHOTO, color=(70, 190, 150)),
     "filled": replace(PHOTO, filled=True, color=(150, 80, 40)),
+    "tinted": replace(PHOTO, filled=True, tint=0.4, color=(150, 80, 40)),
+    "red pencil on yellow": replace(PENCIL, sheet=(150, 225, 240), color=(80, 80, 190)),
     "tilted 12 degrees": replace(PHOTO, tilt=12, table=0.04),
     "tilted 20 degrees": replace(PHOTO, tilt=20, table=0.06),
     "hard shadow": replace(PHOTO, shadow=0.5),
@@ -259,9 +262,11 @@ def _ink(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
             wide = max(1, round(paper.pen * up * rng.uniform(0.88, 1.12)))
             cv2.polylines(image, [fixed(piece)], False, 255, wide, cv2.LINE_AA, 4)
     if paper.filled:
+        fill = np.zeros_like(image)
         for body in drawing.bodies:
             if body.kind != "bar":
-                cv2.fillPoly(image, [fixed(body.outline)], 255, cv2.LINE_AA, 4)
+                cv2.fillPoly(fill, [fixed(body.outline)], round(255 * paper.tint), cv2.LINE_AA, 4)
+        image = np.maximum(image, fill)
     return cv2.resize(image, size[::-1], interpolation=cv2.INTER_AREA).astype(np.float32) / 255
 
 
