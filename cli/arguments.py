@@ -143,7 +143,11 @@ def add_input_options(p: argparse.ArgumentParser) -> None:
         help="what strokes are, as 3,4=anchor or 9=ignore; may be given several times",
     )  # fmt: skip
     p.add_argument(
-        "--page", type=whole_number(1, 100_000), default=1, metavar="N", help="of a PDF; the first without it"
+        "--page",
+        type=whole_number(1, 100_000),
+        default=1,
+        metavar="N",
+        help="of a PDF or TIFF; the first without it",
     )
     p.add_argument(
         "--index", type=whole_number(0, 999_999_999), metavar="K",

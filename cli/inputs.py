@@ -27,9 +27,9 @@ MAX_BYTES = 64 << 20  # of any input: a photo of 12 megapixels has 2 to 15 MB
 class Way:
     """How a drawing is to be read.
 
-    scale: the ink's pixels per metre.  readings: what some strokes are, by their numbers.  page: of a PDF, from
-    1.  index: of a file with many drawings, from 0.  tidy: whether to undo what the hand did to level sides, equal
-    wheels, touching bodies.  stages: a folder for pictures of what was seen on a picture.
+    scale: the ink's pixels per metre.  readings: what some strokes are, by their numbers.  page: of a PDF or
+    TIFF, from 1.  index: of a file with many drawings, from 0.  tidy: whether to undo what the hand did to level
+    sides, equal wheels, touching bodies.  stages: a folder for pictures of what was seen on a picture.
     """
 
     scale: float | None = None

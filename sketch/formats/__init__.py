@@ -78,7 +78,7 @@ def load_sketch(
 
     Args:
         source: a path, or what a file holds.
-        page: of a PDF file, from 1.
+        page: of a PDF or TIFF file, from 1.
         index: of a file with many drawings (Quick, Draw!), from 0.
         stages: a folder for pictures of what was seen on a picture, from page to strokes.
 

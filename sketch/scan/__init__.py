@@ -15,7 +15,7 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
 
     Args:
         data: a PNG, JPEG, WebP, TIFF or BMP file; with the extra `scan` also HEIC and PDF.
-        page: of a PDF file, from 1.
+        page: of a PDF or TIFF file, from 1.
         stages: a folder for pictures of what was seen: page, mask, skeleton and strokes.
 
     The strokes are in the pixels of the picture as displayed upright, y down.  Raises InputError for what

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import InputError
-from sketch.scan.header import Header, probe
+from sketch.scan.header import Header, probe, tiff_page
 
 __all__ = ["decode", "is_picture"]
 
@@ -27,25 +27,25 @@ def is_picture(data: bytes) -> bool:
 def decode(data: bytes, page: int = 1) -> tuple[NDArray[np.uint8], bool]:
     """The picture in a file's bytes, as displayed upright: BGR, shape (h, w, 3); and whether the file is sound.
 
-    PNG, JPEG, WebP, TIFF and BMP; with the extra `scan` also HEIC, and a `page` of a PDF file, from 1.  Raises
-    InputError for anything else, for a file that ends too early and for a picture of more than MAX_PIXELS, which
-    is refused by its header.
+    PNG, JPEG, WebP, TIFF and BMP; with the extra `scan` also HEIC and PDF.  page: of a PDF or TIFF file, from 1.
+    Raises InputError for anything else, for a file that ends too early and for a picture of more than MAX_PIXELS,
+    which is refused by its header.
     """
     if not data:
         raise InputError("", "the file is empty", kind="empty")
-    header = probe(data)
+    header = probe(data, page)
     if header is None:
-        raise InputError(
-            "", "not a picture", "PNG, JPEG, WebP, TIFF, BMP, HEIC and PDF are read", kind="format"
-        )
+        problem = "an AVIF picture, which is not read" if data[4:12] == b"ftypavif" else "not a picture"
+        raise InputError("", problem, "PNG, JPEG, WebP, TIFF, BMP, HEIC and PDF are read", kind="format")
     if header.format == "pdf":
         return _to_bgr8(_decode_pdf(data, page)), True
-    if page != 1:
-        raise InputError("", f"there is no page {page}: the picture has one")
+    if not 1 <= page <= header.pages:
+        has = f"the file has {header.pages}" if header.pages > 1 else "the picture has one"
+        raise InputError("", f"there is no page {page}: {has}")
     if header.format == "heic":
         return _to_bgr8(_decode_heic(data)), True
     _check_size(header)
-    picture, sound = _decode_with_cv2(data, header)
+    picture, sound = _decode_with_cv2(tiff_page(data, page) if page > 1 else data, header)
     return _to_bgr8(picture), sound
 
 
@@ -162,8 +162,10 @@ def _to_bgr8(picture: NDArray[Any]) -> NDArray[np.uint8]:
 
     if picture.dtype == np.uint16:
         picture = cv2.convertScaleAbs(picture, alpha=1 / 257)
-    elif picture.dtype != np.uint8:  # floating-point TIFF: 0 to 1 by custom
-        picture = np.clip(np.nan_to_num(picture) * 255, 0, 255).astype(np.uint8)
+    elif picture.dtype != np.uint8:  # floating-point TIFF: 0 to 1 by custom, or what whole numbers would have
+        picture = np.nan_to_num(picture)
+        white = next((most for most in (1, 255) if picture.max() <= most), 65535)
+        picture = np.clip(picture * (255 / white), 0, 255).astype(np.uint8)
     if picture.ndim == 2:
         return np.asarray(cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR), np.uint8)
     if picture.shape[2] == 4:

@@ -6,7 +6,9 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 
-__all__ = ["Header", "probe"]
+__all__ = ["Header", "probe", "tiff_page"]
+
+MOST_PAGES = 1000  # of a TIFF file that are counted
 
 
 @dataclass(frozen=True)
@@ -15,20 +17,27 @@ class Header:
 
     width, height: [pixels] as stored, 0 where the header does not give them (HEIC and PDF, whose own
     libraries are asked; a file that ends within its header).  orientation: EXIF's, 1 (upright) to 8.
+    pages: of a TIFF file; the others are taken to have one.
     """
 
     format: str
     width: int = 0
     height: int = 0
     orientation: int = 1
+    pages: int = 1
 
 
-def probe(data: bytes) -> Header | None:
-    """The header of a picture file, of no size where the file ends within it; None for what is no picture."""
+def probe(data: bytes, page: int = 1) -> Header | None:
+    """The header of a picture file, of no size where the file ends within it; None for what is no picture.
+
+    page: of a TIFF file, from 1, whose size and orientation are told; the last one where there are fewer.
+    """
     kind = next((kind for kind, begins in _BEGINNINGS.items() if begins(data)), None)
     if kind is None:
         return None
     try:
+        if kind == "tiff":
+            return _tiff(data, page)
         return _READERS[kind](data) if kind in _READERS else Header(kind)
     except (struct.error, IndexError):
         return Header(kind)
@@ -63,9 +72,10 @@ def _png(data: bytes) -> Header:
     return Header("png", width, height, _png_orientation(data))
 
 
-def _tiff(data: bytes) -> Header:
-    tags = _tiff_tags(data)
-    return Header("tiff", tags.get(256, 0), tags.get(257, 0), _valid(tags.get(274, 1)))
+def _tiff(data: bytes, page: int) -> Header:
+    at = _tiff_directories(data)
+    tags = _tiff_tags(data, at[min(page, len(at)) - 1])
+    return Header("tiff", tags.get(256, 0), tags.get(257, 0), _valid(tags.get(274, 1)), len(at))
 
 
 def _bmp(data: bytes) -> Header:
@@ -82,10 +92,32 @@ def _valid(orientation: int) -> int:
     return orientation if 1 <= orientation <= 8 else 1
 
 
-def _tiff_tags(data: bytes) -> dict[int, int]:
-    """The first directory's tags that hold one short or long (TIFF 6.0, section 2)."""
+def _tiff_directories(data: bytes) -> list[int]:
+    """Where the directories of a TIFF file's pages are, the first at least; a chain that comes back ends there."""
     order = "<" if data[:2] == b"II" else ">"
     (at,) = struct.unpack_from(order + "I", data, 4)
+    found = [at]
+    while len(found) < MOST_PAGES:
+        try:
+            (count,) = struct.unpack_from(order + "H", data, at)
+            (at,) = struct.unpack_from(order + "I", data, at + 2 + 12 * count)
+        except struct.error:
+            break
+        if not at or at in found:
+            break
+        found.append(at)
+    return found
+
+
+def tiff_page(data: bytes, page: int) -> bytes:
+    """A TIFF file with a page of it, from 1, for its first."""
+    order = "<" if data[:2] == b"II" else ">"
+    return data[:4] + struct.pack(order + "I", _tiff_directories(data)[page - 1]) + data[8:]
+
+
+def _tiff_tags(data: bytes, at: int) -> dict[int, int]:
+    """The tags of the directory at a place that hold one short or long (TIFF 6.0, section 2)."""
+    order = "<" if data[:2] == b"II" else ">"
     (count,) = struct.unpack_from(order + "H", data, at)
     tags = {}
     for k in range(count):
@@ -97,7 +129,7 @@ def _tiff_tags(data: bytes) -> dict[int, int]:
 
 def _exif_orientation(exif: bytes) -> int:
     try:
-        return _valid(_tiff_tags(exif).get(274, 1))
+        return _valid(_tiff_tags(exif, _tiff_directories(exif)[0]).get(274, 1))
     except (struct.error, IndexError):
         return 1
 
@@ -160,7 +192,6 @@ _READERS: dict[str, Callable[[bytes], Header]] = {
     "png": _png,
     "jpeg": _jpeg,
     "webp": _webp,
-    "tiff": _tiff,
     "bmp": _bmp,
     "gif": _gif,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 import sys
 from pathlib import Path
@@ -13,7 +14,7 @@ from sheets import CROSS, drawn, encoded, ink, lit, off_box, off_ring
 
 from sim.scene import InputError
 from sketch.ink import Sketch
-from sketch.scan import read_picture
+from sketch.scan import read_picture, tracing
 
 HEIGHT, WIDTH = 560, 720
 ACROSS, DOWN = np.meshgrid(np.linspace(0, 1, WIDTH), np.linspace(0, 1, HEIGHT))
@@ -251,6 +252,31 @@ def test_stages_are_written(tmp_path: Path) -> None:
     assert names == ["1-page.png", "2-mask.png", "3-skeleton.png", "4-strokes.png"]
     mask = cv2.imread(str(tmp_path / "seen" / "2-mask.png"), cv2.IMREAD_GRAYSCALE)
     assert set(np.unique(mask)) == {0, 255}
+
+
+def test_pages_of_a_tiff() -> None:
+    """A scanner puts many sheets into one file."""
+    blank = np.full((300, 400, 3), 250, np.uint8)
+    data = bytes(cv2.imencodemulti(".tiff", [blank, PAPERS["flat colours"]])[1])
+    assert read_picture(data).strokes == []
+    sketch = read_picture(data, page=2)
+    assert (sketch.width, sketch.height) == (WIDTH, HEIGHT)
+    assert_all(sketch)
+    with pytest.raises(InputError, match="no page 3: the file has 2"):
+        read_picture(data, page=3)
+
+
+@pytest.mark.parametrize("white", [1.0, 255.0, 65535.0])
+def test_floating_point_values_are_shares_of_white_or_whole_numbers(white: float) -> None:
+    picture = PAPERS["noise"].astype(np.float32) * np.float32(white / 255)
+    assert_all(read_picture(encoded(picture, ".tiff")))
+
+
+def test_too_many_lines_are_said_to_be_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tracing, "MOST_LINES", 5)
+    sketch = read_picture(encoded(PAPERS["noise"]))
+    assert not sketch.strokes
+    assert re.search("nothing was read: [0-9]+ lines are too many", sketch.notes[0])
 
 
 def test_heic() -> None:
