@@ -99,6 +99,18 @@ def bridge(planks: int) -> Case:
     return make(f"bridge of {planks} planks", bodies + load, 8, joints=joints)
 
 
+def laden_bridge() -> Case:
+    """A heap on a taut bridge: the crowd's pivots."""
+    planks = [box(f"p{i}", 0.225 + 0.45 * i, 3, 0.5, 0.1) for i in range(12)]
+    ends = [None, *(str(p["id"]) for p in planks), None]
+    joints = [pivot(ends[i], ends[i + 1], 0.45 * i, 3) for i in range(13)]
+    heap = [
+        box(f"b{k}", 0.3 + 0.4 * (k % 12), 3.4 + 0.4 * (k // 12), 0.3, 0.3, angle=0.7 * math.sin(k))
+        for k in range(25)
+    ]
+    return make("heap on a taut bridge", [ground(), *planks, *heap], 6, joints=joints)
+
+
 def four_bar() -> Case:
     bars = [box("crank", 0, 0.5, 0.2, 1), box("coupler", 1, 1, 2, 0.2), box("rocker", 2, 0.25, 0.2, 1.5)]
     joints = [pivot(None, "crank", 0, 0), pivot("crank", "coupler", 0, 1), pivot("coupler", "rocker", 2, 1)]
@@ -256,6 +268,7 @@ def cases() -> list[Case]:
         *(mass_ratio(10.0**k) for k in (2, 4, 6)),
         chain(100),
         bridge(16),
+        laden_bridge(),
         *(f() for f in simple),
         projectile("ball"),
         projectile("box"),

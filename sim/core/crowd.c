@@ -117,10 +117,11 @@ static int substep(Crowd *crowd, World *world, double left, double dt) {
     move(crowd, dt);
     if (crowd->pivots.count > 0) find_pressed(crowd);
     pivots_join(&crowd->pivots, mover, 1 / dt, crowd->pressed);
-    pivots_factor(&crowd->pivots, mover);
+    pivots_factor(&crowd->pivots, mover, false);
     crowd->moment++;
     gap_close(rows, mover, dt);
     pivots_join(&crowd->pivots, mover, 0, NULL);
+    pivots_factor(&crowd->pivots, mover, true);
     pivots_solve(&crowd->pivots, mover);
     rows_bounce(rows, mover);
     status = events_tell_impacts(crowd, world);
@@ -167,7 +168,7 @@ static int begin(Crowd *crowd, World *world, double length, double h) {
     if (status != SIM_OK) return status;
     for (int32_t i = 0; i < crowd->pivots.count; i++)
         crowd->touched[crowd->pivots.pivot[i].a] = crowd->touched[crowd->pivots.pivot[i].b] = true;
-    pivots_factor(&crowd->pivots, crowd->mover);
+    pivots_factor(&crowd->pivots, crowd->mover, true);
     gap_limit(crowd->rows.contact, crowd->rows.count, crowd->mover, h);
     rows_link(&crowd->rows, 0);
     for (int32_t i = 0; i < world->body_count; i++) crowd->part[i] = part_of(world, i);

@@ -6,29 +6,37 @@
 #include "crowd_pivots.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-static const double GIVE =
-    4e-4; /* of a row's diagonal: loops, and chains drawn taut, say the same thing more than once */
+/* Of a row's diagonal, for loops and chains drawn taut, which say the same thing more than once.  The speeds that they ask for
+ * always agree, those of the bodies at rest do.  The places may not: two rods on one line do not reach a third point, and
+ * what would bring a taut chain a little further along it throws it far aside. */
+static const double GIVE_SPEEDS = 1e-9;
+static const double GIVE_PLACES = 3e-3;
 
 int pivots_create(Pivots *pivots, const World *world) {
     size_t n = (size_t)world->joint_count + 1;
     *pivots = (Pivots){
         .pivot = calloc(n, sizeof *pivots->pivot),
         .right = calloc(2 * n, sizeof *pivots->right),
-        .inverse_d = calloc(2 * n, sizeof *pivots->inverse_d),
+        .speeds = {.give = GIVE_SPEEDS, .inverse_d = calloc(2 * n, sizeof(double))},
+        .places = {.give = GIVE_PLACES, .inverse_d = calloc(2 * n, sizeof(double))},
         .row = calloc(2 * n, sizeof *pivots->row),
         .first = calloc(2 * n, sizeof *pivots->first),
         .mark = calloc((size_t)world->body_count, sizeof *pivots->mark),
     };
-    bool made = pivots->pivot && pivots->right && pivots->inverse_d && pivots->row && pivots->first && pivots->mark;
+    bool made = pivots->pivot && pivots->right && pivots->speeds.inverse_d && pivots->places.inverse_d && pivots->row &&
+                pivots->first && pivots->mark;
     return made ? SIM_OK : SIM_OUT_OF_MEMORY;
 }
 
 void pivots_destroy(Pivots *pivots) {
     free(pivots->pivot);
-    free(pivots->entry);
     free(pivots->right);
-    free(pivots->inverse_d);
+    free(pivots->speeds.entry);
+    free(pivots->speeds.inverse_d);
+    free(pivots->places.entry);
+    free(pivots->places.inverse_d);
     free(pivots->row);
     free(pivots->first);
     free(pivots->mark);
@@ -78,10 +86,14 @@ static int shape_envelope(Pivots *pivots, const Mover *mover) {
             pivots->row[k] = used++;
         }
     }
+    pivots->entry_count = used;
     if (used <= pivots->entry_capacity) return SIM_OK;
-    double *entry = realloc(pivots->entry, (size_t)(2 * used) * sizeof *entry);
-    if (!entry) return SIM_OUT_OF_MEMORY;
-    pivots->entry = entry;
+    for (int32_t k = 0; k < 2; k++) {
+        Factored *f = k == 0 ? &pivots->speeds : &pivots->places;
+        double *entry = realloc(f->entry, (size_t)(2 * used) * sizeof *entry);
+        if (!entry) return SIM_OUT_OF_MEMORY;
+        f->entry = entry;
+    }
     pivots->entry_capacity = 2 * used;
     return SIM_OK;
 }
@@ -120,11 +132,29 @@ static void couple(const Pivot *p, const Pivot *q, const Mover *mover, double bl
     }
 }
 
-static double *at(const Pivots *pivots, int32_t row, int32_t column) {
-    return &pivots->entry[pivots->row[row] - row + column];
+static double *at(const Pivots *pivots, const Factored *f, int32_t row, int32_t column) {
+    return &f->entry[pivots->row[row] - row + column];
 }
 
-void pivots_factor(Pivots *pivots, const Mover *mover) {
+/* As L D L^T, of the matrix in its place. */
+static void factor(const Pivots *pivots, Factored *f) {
+    for (int32_t i = 0; i < 2 * pivots->count; i++) {
+        double *row = at(pivots, f, i, 0), left = row[i] * (1 + f->give);
+        for (int32_t j = pivots->first[i]; j < i; j++) {
+            const double *above = at(pivots, f, j, 0);
+            int32_t begin = pivots->first[i] > pivots->first[j] ? pivots->first[i] : pivots->first[j];
+            for (int32_t k = begin; k < j; k++) row[j] -= row[k] * above[k];
+        }
+        for (int32_t j = pivots->first[i]; j < i; j++) { /* row[j] was L_ij d_j */
+            double l = row[j] * f->inverse_d[j];
+            left -= l * row[j];
+            row[j] = l;
+        }
+        f->inverse_d[i] = left > 0 ? 1 / left : 0;
+    }
+}
+
+void pivots_factor(Pivots *pivots, const Mover *mover, bool speeds) {
     for (int32_t i = 0; i < pivots->count; i++) {
         Pivot *p = &pivots->pivot[i];
         p->arm_a = turned_arm(p->start_a, mover[p->a].turned);
@@ -132,39 +162,32 @@ void pivots_factor(Pivots *pivots, const Mover *mover) {
         for (int32_t j = pivots->first[2 * i] / 2; j <= i; j++) {
             double block[4];
             couple(p, &pivots->pivot[j], mover, block);
-            *at(pivots, 2 * i, 2 * j) = block[0];
-            if (j < i) *at(pivots, 2 * i, 2 * j + 1) = block[1];
-            *at(pivots, 2 * i + 1, 2 * j) = block[2];
-            *at(pivots, 2 * i + 1, 2 * j + 1) = block[3];
+            double *upper = at(pivots, &pivots->places, 2 * i, 2 * j),
+                   *lower = at(pivots, &pivots->places, 2 * i + 1, 2 * j);
+            upper[0] = block[0];
+            if (j < i) upper[1] = block[1];
+            lower[0] = block[2];
+            lower[1] = block[3];
         }
     }
-    for (int32_t i = 0; i < 2 * pivots->count; i++) {
-        double *row = at(pivots, i, 0), left = row[i] * (1 + GIVE);
-        for (int32_t j = pivots->first[i]; j < i; j++) {
-            const double *above = at(pivots, j, 0);
-            int32_t begin = pivots->first[i] > pivots->first[j] ? pivots->first[i] : pivots->first[j];
-            for (int32_t k = begin; k < j; k++) row[j] -= row[k] * above[k];
-        }
-        for (int32_t j = pivots->first[i]; j < i; j++) { /* row[j] was L_ij d_j */
-            double l = row[j] * pivots->inverse_d[j];
-            left -= l * row[j];
-            row[j] = l;
-        }
-        pivots->inverse_d[i] = left > 0 ? 1 / left : 0;
+    if (speeds && pivots->count > 0) {
+        memcpy(pivots->speeds.entry, pivots->places.entry, (size_t)pivots->entry_count * sizeof *pivots->speeds.entry);
+        factor(pivots, &pivots->speeds);
     }
+    factor(pivots, &pivots->places);
 }
 
 /* The impulses for the right side, in its place. */
-static void back_solve(Pivots *pivots) {
+static void back_solve(Pivots *pivots, const Factored *f) {
     double *x = pivots->right;
     int32_t n = 2 * pivots->count;
     for (int32_t i = 0; i < n; i++) {
-        const double *row = at(pivots, i, 0);
+        const double *row = at(pivots, f, i, 0);
         for (int32_t j = pivots->first[i]; j < i; j++) x[i] -= row[j] * x[j];
     }
-    for (int32_t i = 0; i < n; i++) x[i] *= pivots->inverse_d[i];
+    for (int32_t i = 0; i < n; i++) x[i] *= f->inverse_d[i];
     for (int32_t i = n - 1; i >= 0; i--) {
-        const double *row = at(pivots, i, 0);
+        const double *row = at(pivots, f, i, 0);
         for (int32_t j = pivots->first[i]; j < i; j++) x[j] -= row[j] * x[i];
     }
 }
@@ -178,7 +201,7 @@ void pivots_solve(Pivots *pivots, Mover *mover) {
         pivots->right[2 * i] = -v.x;
         pivots->right[2 * i + 1] = -v.y;
     }
-    back_solve(pivots);
+    back_solve(pivots, &pivots->speeds);
     for (int32_t i = 0; i < pivots->count; i++) {
         const Pivot *p = &pivots->pivot[i];
         Mover *a = &mover[p->a], *b = &mover[p->b];
@@ -210,7 +233,7 @@ void pivots_join(Pivots *pivots, Mover *mover, double rate, const bool *pressed)
         pivots->right[2 * i] = -apart.x;
         pivots->right[2 * i + 1] = -apart.y;
     }
-    back_solve(pivots);
+    back_solve(pivots, &pivots->places);
     for (int32_t i = 0; i < pivots->count; i++) {
         const Pivot *p = &pivots->pivot[i];
         Vec j = vec(pivots->right[2 * i], pivots->right[2 * i + 1]);

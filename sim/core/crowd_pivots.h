@@ -12,14 +12,20 @@ typedef struct Pivot {
     Vec start_apart;      /* from a's point to b's when the frame began */
 } Pivot;
 
+/* A matrix by rows, two a pivot, from its first column that is not 0 to the diagonal; factored L D L^T. */
+typedef struct Factored {
+    double give; /* of its diagonal, that is added to it */
+    double *entry, *inverse_d;
+} Factored;
+
 typedef struct Pivots {
     Pivot *pivot; /* in the order of elimination */
     int32_t count;
-    /* The matrix J M^-1 J^T by rows, two a pivot, from its first column that is not 0 to the diagonal; factored L D L^T. */
-    double *entry, *right, *inverse_d;
+    Factored speeds, places; /* J M^-1 J^T, to solve for both */
+    double *right;
     int64_t *row; /* where a row's diagonal is in `entry` */
     int32_t *first;
-    int64_t entry_capacity;
+    int64_t entry_count, entry_capacity;
     int32_t *mark; /* by body, for ordering */
 } Pivots;
 
@@ -29,8 +35,8 @@ void pivots_destroy(Pivots *pivots);
 /* Take up the joints of moving bodies, as a frame begins. */
 int pivots_load(Pivots *pivots, const World *world, const Mover *mover);
 
-/* The matrix for where the bodies are now. */
-void pivots_factor(Pivots *pivots, const Mover *mover);
+/* The matrix for where the bodies are now, to mend their places, and to solve for their speeds too. */
+void pivots_factor(Pivots *pivots, const Mover *mover, bool speeds);
 
 /* Bring the two points of every pivot to the same velocity. */
 void pivots_solve(Pivots *pivots, Mover *mover);

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from core_build import FIXED, REST
 
-from sim import Scene
+from sim import Scene, simulate
 
 G = 9.81
 
@@ -320,6 +320,28 @@ def test_a_chain_with_a_heavy_end_hangs_together(crowd):
     assert gaps.max() < 0.05
     e = energy(s, run)
     assert e.max() - e[0] < 0.02 * (e[0] - s.bodies[-1].mass_properties()[0] * -G * 15)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_taut_bridge_bears_a_heap(seed):
+    """Planks in one line between two fixed points can't sag: their pivots' places say more than there is room for."""
+    rng = np.random.default_rng(seed)
+    planks = [box(f"p{i}", 0.225 + 0.45 * i, 3, 0.5, 0.1) for i in range(12)]
+    ends = [None, *(p["id"] for p in planks), None]
+    pivots = [
+        {"type": "pivot", "bodies": [ends[i], ends[i + 1]], "position": [0.45 * i, 3]} for i in range(13)
+    ]
+    heap = [
+        box(f"b{k}", 0.3 + 0.4 * (k % 12), 3.4 + 0.4 * (k // 12), 0.3, 0.3, angle=rng.uniform(-1, 1))
+        for k in range(25)
+    ]
+    s = scene(GROUND, *planks, *heap, joints=pivots, friction=0.4)
+    run = simulate(s, 6.0, 60)
+    total = run.energy[:, 2]
+    assert run.profile["crowd_steps"] > 0
+    assert (total - np.minimum.accumulate(total)).max() < 5e-3 * total[0]
+    assert np.abs(run.positions[-1, 1:13, 1] - 3).max() < 0.05
+    assert np.hypot(*run.velocities[-1].T).max() < 0.05
 
 
 @pytest.mark.parametrize("speed", [10.0, 100.0, 1000.0, 20000.0])
