@@ -20,9 +20,8 @@ Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
 Rows = dict[int, set[int]]  # of each small stroke those that mean nothing in the row that it stands in
 
-WRITTEN = (
-    60.0  # nats that another thing in a row is likelier a letter, for each stroke there that means nothing
-)
+# nats that another thing in a row is likelier a letter, for each stroke there that means nothing
+WRITTEN = 60.0
 LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
 BETWEEN = 1.0  # of the larger one's extent: what is between the strokes of a word, or of two, at most
 UNLIKE = 4.0  # times that strokes of one word are as large as others: a letter's bar, and its stem

@@ -176,8 +176,8 @@ static int advance_crowd(Sim *sim, const SimOptions *options, double *time) {
 
 static int advance(Sim *sim, const SimOptions *options, double end) {
     double time = 0, wait = FIRST_WAIT, again = INFINITY;
-    int32_t most =
-        0; /* loose bodies that the crowd has had since it was last empty: what is left of a pile ends in it */
+    /* loose bodies that the crowd has had since it was last empty: what is left of a pile ends in it */
+    int32_t most = 0;
     int status = exact_start(&sim->exact, 0);
     while (status == SIM_OK && time <= end) { /* what happens at the last sample's time belongs to it */
         int32_t loose, crowd = crowd_size(sim, &loose);

@@ -5,11 +5,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
-#define INK_API __declspec(dllexport)
-#else
-#define INK_API __attribute__((visibility("default")))
-#endif
+#include "api.h"
 
 enum {
     SAMPLES = 48, /* of a piece of ink: a rectangle's side still has a dozen */

@@ -2,9 +2,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "api.h"
 #include "rows.h"
-
-#define EXPORT __attribute__((visibility("default")))
 
 static int larger(int a, int b) { return a > b ? a : b; }
 
@@ -29,8 +28,8 @@ static int is_crest(const uint8_t *p, int32_t width, int32_t reach, float crest,
 
 /* Mark in `line`, which is 0, the pixels that are darker than `faintest`, no ink of `mask` and on the crest of a line
  * (see is_crest).  Nothing is looked for within `reach` of the picture's edges. */
-EXPORT void ink_crests(const uint8_t *darkness, const uint8_t *mask, int32_t width, int32_t height, int32_t faintest,
-                       int32_t reach, float crest, float beside, uint8_t *line) {
+INK_API void ink_crests(const uint8_t *darkness, const uint8_t *mask, int32_t width, int32_t height, int32_t faintest,
+                        int32_t reach, float crest, float beside, uint8_t *line) {
     for (int32_t y = reach; y < height - reach; y++) {
         const size_t row = (size_t)y * width;
         for (int32_t x = reach; x < width - reach; x++) {
@@ -102,8 +101,8 @@ static int is_short(const int32_t *pixels, int32_t count, int32_t width, double 
 /* Add to the ink of `mask` the pieces of `line` that are at least `longest` long or link two stretches of ink: what is
  * shorter and leads nowhere is a bump of an edge.  size: of the line, which leaves out the picture's two outermost
  * rows and columns.  Returns 0, or -1 where memory is short. */
-EXPORT int32_t ink_link(const uint8_t *line, int32_t width, int32_t height, int32_t size, double longest,
-                        uint8_t *mask) {
+INK_API int32_t ink_link(const uint8_t *line, int32_t width, int32_t height, int32_t size, double longest,
+                         uint8_t *mask) {
     Beside b = {mask, line, {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1}, NULL, NULL, 0};
     int32_t status = -1, dropped = 0;
     int32_t *pixels = malloc(((size_t)size + 1) * 3 * sizeof *pixels);
@@ -135,7 +134,7 @@ out:
 /* Distance of each pixel of ink to the paper, into `distance`, which is 0.  The outermost rows and columns count as
  * paper.  By chamfering with the steps of Borgefors, "Distance transformations in digital images", CVGIP 34, 1986,
  * that are best for 3 x 3 pixels. */
-EXPORT void ink_distance(const uint8_t *mask, int32_t width, int32_t height, float *distance) {
+INK_API void ink_distance(const uint8_t *mask, int32_t width, int32_t height, float *distance) {
     const float straight = 0.955F, diagonal = 1.3693F;
     for (int pass = 0; pass < 2; pass++) {
         const int32_t ahead = pass ? width : -width, back = pass ? 1 : -1;

@@ -2,7 +2,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#define EXPORT __attribute__((visibility("default")))
+#include "api.h"
 
 static inline uint8_t least(uint8_t a, uint8_t b) { return a < b ? a : b; }
 static inline uint8_t most(uint8_t a, uint8_t b) { return a > b ? a : b; }
@@ -14,8 +14,8 @@ static inline float rounded(float x) { return x + 12582912.0F - 12582912.0F; }
  *
  * A pen of any colour is dark in one channel at least, and that one counts.  negative: of a picture's negative.
  * light: at each pixel; below `dimmest` it counts as that.  Returns 0, or -1 where memory is short. */
-EXPORT int32_t ink_darkness(const uint8_t *bgr, const uint8_t *light, int32_t width, int32_t height, int32_t negative,
-                            int32_t dimmest, uint8_t *darkness) {
+INK_API int32_t ink_darkness(const uint8_t *bgr, const uint8_t *light, int32_t width, int32_t height, int32_t negative,
+                             int32_t dimmest, uint8_t *darkness) {
     uint8_t *grey = malloc((size_t)width + 1);
     if (!grey) return -1;
     for (int32_t y = 0; y < height; y++) {
@@ -37,8 +37,8 @@ EXPORT int32_t ink_darkness(const uint8_t *bgr, const uint8_t *light, int32_t wi
  *
  * A pixel is as crisp as it is dark, and half of what it is darker than the mean around it again; rounded, to the even one
  * of two.  around: the mean, which gets how crisp each pixel is.  Of `count` pixels each. */
-EXPORT void ink_crisp(const uint8_t *restrict darkness, const uint8_t *restrict darkest, int64_t count, uint8_t floor,
-                      uint8_t *restrict around, uint8_t *restrict mask) {
+INK_API void ink_crisp(const uint8_t *restrict darkness, const uint8_t *restrict darkest, int64_t count, uint8_t floor,
+                       uint8_t *restrict around, uint8_t *restrict mask) {
     for (int64_t i = 0; i < count; i++) {
         const int16_t twice = (int16_t)(3 * darkness[i] - around[i]), even = (int16_t)(twice >> 1 & 1);
         const int16_t crisp = (int16_t)((twice + even) >> 1);

@@ -7,9 +7,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "api.h"
 #include "rows.h"
-
-#define EXPORT __attribute__((visibility("default")))
 
 enum { INK = 1, LISTED = 2, GOING = 4 };
 
@@ -111,7 +110,7 @@ static size_t peel(uint8_t *mask, const int offset[8], const uint8_t table[256],
 
 /* Thin a mask (0 is paper) in place; what is left is 1.  The outermost rows and columns count as paper.
  * Returns the number of pixels left, or -1 where memory is short. */
-EXPORT int32_t ink_thin(uint8_t *mask, int32_t width, int32_t height) {
+INK_API int32_t ink_thin(uint8_t *mask, int32_t width, int32_t height) {
     if (width < 3 || height < 3) {
         for (int64_t i = 0; i < (int64_t)width * height; i++) mask[i] = 0;
         return 0;

@@ -6,9 +6,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "api.h"
 #include "rows.h"
-
-#define EXPORT __attribute__((visibility("default")))
 
 enum { FREE_END = -1, CLOSED = -2 };
 
@@ -96,8 +95,8 @@ static void walk_all(Grid *g, const int32_t *pixels, int32_t count, Chains *out)
  * points, nodes: room for `count` each; start: count + 1; ends: 2 count.  nodes gets a node + 1 for every pixel of
  * `points`' page order that belongs to one: pairs are written to node_pixels (pixel index) and node_ids.
  * counts gets the numbers of chains, nodes and node pixels.  Returns 0, or -1 where memory is short. */
-EXPORT int32_t ink_trace(const uint8_t *mask, int32_t width, int32_t height, int32_t count, int32_t *points,
-                         int32_t *start, int32_t *ends, int32_t *node_pixels, int32_t *node_ids, int32_t counts[3]) {
+INK_API int32_t ink_trace(const uint8_t *mask, int32_t width, int32_t height, int32_t count, int32_t *points,
+                          int32_t *start, int32_t *ends, int32_t *node_pixels, int32_t *node_ids, int32_t counts[3]) {
     Grid g = {mask, width, {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1}, NULL};
     Chains out = {points, start, ends, 0, 0, 0};
     int32_t status = -1, found = 0;

@@ -2,16 +2,15 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "api.h"
 #include "rows.h"
-
-#define EXPORT __attribute__((visibility("default")))
 
 /* List the pixels of each 8-connected piece of ink, piece after piece.
  *
  * mask: 0 is paper; the outermost rows and columns count as paper.  pixels: room for every ink pixel; gets their
  * indices.  start: room for one more than there are ink pixels; gets where each piece starts in pixels, and the end.
  * Returns the number of pieces, or -1 where memory is short. */
-EXPORT int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, int32_t *pixels, int32_t *start) {
+INK_API int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, int32_t *pixels, int32_t *start) {
     const int32_t offset[8] = {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1};
     int32_t pieces = 0, listed = 0;
     start[0] = 0;
