@@ -50,9 +50,9 @@ def written(
     if not idle:
         return told
     marks = _Marks(chosen, [proposed[p].rows[k] for p, k in likely], LARGEST * page.drawn)
-    small = {i: p for i, p in page.pieces.items() if p.extent < marks.largest}
+    small = _Small(page, [p for p in page.pieces.values() if p.extent < marks.largest])
     while True:
-        rows = _rows(page, small, idle)
+        rows = small.rows(idle)
         lost = {
             i
             for c, gain in chosen
@@ -91,6 +91,7 @@ class _Marks:
         self._bodies = [c for c, _ in likely if c.closed]
         where = np.array([row for (c, _), row in zip(likely, rows, strict=True) if c.closed]).reshape(-1, 5)
         self._boxes, self._extents = where[:, :4], where[:, 4]
+        self._known: dict[Fitted, bool] = {}
 
     def loss(self, page: Page, rows: Rows, c: Fitted) -> float:
         """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in."""
@@ -99,12 +100,15 @@ class _Marks:
             return 0.0
         extent = _extent(c)
         said = WRITTEN * sum(extent < TALL * page.pieces[i].extent for i in beside)
-        return said if said and extent < self.largest and self._may_be_written(c, extent) else 0.0
+        if not said or extent >= self.largest:
+            return 0.0
+        if c not in self._known:
+            self._known[c] = self._may_be_written(c, extent)
+        return said if self._known[c] else 0.0
 
     def _may_be_written(self, c: Fitted, extent: float) -> bool:
         """Whether it is no X on a body, and no pivot: of two bodies, or the only one of its body."""
-        under = self._under(c, extent)
-        if not under or c.kind not in ("circle", "cross"):
+        if c.kind not in ("circle", "cross") or not (under := self._under(c, extent)):
             return True
         return c.kind == "circle" and len(under) == 1 and self._is_pinned_again(under[0], c)
 
@@ -133,35 +137,50 @@ def _extent(c: Fitted) -> float:
     return math.dist(c.outline.min(axis=0), c.outline.max(axis=0))
 
 
-def _rows(page: Page, small: dict[int, Piece], idle: Collection[int]) -> Rows:
-    """small: the strokes that may be in one, by their index.  idle: those that mean nothing."""
-    left, rows = dict(small), Rows()
-    for start in sorted(idle):
-        if start not in left:
-            continue
-        row, reached = [left.pop(start)], 0
-        while reached < len(row) and left:
-            p = row[reached]
-            reached += 1
-            near = [q for q in left.values() if _near(page, p, q)]
-            row += near
-            for q in near:
-                del left[q.index]
-        its = {p.index for p in row if p.index in idle}
-        rows.update((p.index, its) for p in row)
-    return rows
+class _Small:
+    """The strokes that may be in a row, to be asked which stand in one."""
 
+    def __init__(self, page: Page, pieces: Sequence[Piece]) -> None:
+        self._page, self._pieces = page, {p.index: p for p in pieces}
+        self._indices = np.array([p.index for p in pieces], dtype=np.intp)
+        self._boxes = np.array([p.box for p in pieces]).reshape(-1, 4)
+        self._extents = np.array([p.extent for p in pieces])
+        self._near: dict[int, list[int]] = {}
 
-def _near(page: Page, p: Piece, q: Piece) -> bool:
-    """Whether two strokes are as near, and as alike in size, as those of a word."""
-    large = max(p.extent, q.extent)
-    reach = BETWEEN * large
-    if large > UNLIKE * min(p.extent, q.extent) or not _boxes_near(p, q, reach):
-        return False
-    one, other = (page.strokes.samples[r.stroke] for r in (p, q))
-    step = max(len(one) // FEW, 1)
-    gaps = one[::step, None] - other[None, ::step]
-    return bool((gaps**2).sum(axis=2).min() < reach**2)
+    def rows(self, idle: Collection[int]) -> Rows:
+        """idle: the strokes that mean nothing."""
+        left, rows = set(self._pieces), Rows()
+        for start in sorted(idle):
+            if start not in left:
+                continue
+            left.remove(start)
+            row = [start]
+            for i in row:  # it grows meanwhile
+                near = [j for j in self.near(i) if j in left]
+                left.difference_update(near)
+                row += near
+            its = {i for i in row if i in idle}
+            rows.update((i, its) for i in row)
+        return rows
+
+    def near(self, i: int) -> list[int]:
+        """The strokes that are as near to one, and as alike in size, as those of a word."""
+        if i not in self._near:
+            p = self._pieces[i]
+            large = np.maximum(p.extent, self._extents)
+            reach = BETWEEN * large[:, None]
+            close = (self._boxes[:, :2] < p.box[2:] + reach) & (self._boxes[:, 2:] > p.box[:2] - reach)
+            close[:, 0] &= large <= UNLIKE * np.minimum(p.extent, self._extents)
+            some = self._indices[close.all(axis=1)].tolist()
+            self._near[i] = [j for j in some if j != i and self._joins(p, self._pieces[j])]
+        return self._near[i]
+
+    def _joins(self, p: Piece, q: Piece) -> bool:
+        """Whether the ink of two strokes is no further apart than that of a word."""
+        one, other = (self._page.strokes.samples[r.stroke] for r in (p, q))
+        step = max(len(one) // FEW, 1)
+        gaps = one[::step, None] - other[None, ::step]
+        return bool((gaps**2).sum(axis=2).min() < (BETWEEN * max(p.extent, q.extent)) ** 2)
 
 
 def _boxes_near(p: Piece, q: Piece, reach: float) -> bool:
