@@ -19,7 +19,7 @@ from sim import InputError
 from sketch import load_sketch, recognize
 
 SKETCHES = 180
-RIGHT = {"strokes": 0.97, "scan": 0.91}  # share of whole sketches, at least
+RIGHT = {"strokes": 0.98, "scan": 0.94}  # share of whole sketches, at least
 EXACT = {"S1_": 1e-9, "S2_": 1e-9, "S9_": 1e-5}  # error [m] at tolerance 1e-6, at most
 ELSE = 1e-6
 
