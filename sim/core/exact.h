@@ -114,6 +114,18 @@ int change_tell_rest(Exact *exact, int32_t body, double time, Vec at);
 /* Set the group's bodies down where they are, for the crowd to take up. */
 void group_send_to_crowd(Exact *exact, double time);
 
+static inline bool is_tracked(const Exact *e, int32_t body) { return e->world->body[body].mode != MODE_CROWD; }
+
+/* search.c: find the first touches of all bodies marked as changed, and of those whose partner was one of them. */
+int search_touches(Exact *exact, double from);
+
+/* Touches are looked for up to a horizon that does not hang on how long the run is to be: a longer one begins as a shorter
+ * one does. */
+int search_farther(Exact *exact);
+
+/* Mark the bodies that something is near or that may hang on a joint: all others are by themselves. */
+int search_neighbours(Exact *exact, double time);
+
 /* The next stretch of an island's smooth motion. */
 int island_advance(Exact *exact, int32_t island, double from);
 int island_settle(Exact *exact, const Island *island, double time);

@@ -39,7 +39,6 @@ STAIN = 0.006  # of the picture's size, to either side: what is wider is a stain
 EDGE = 3.0  # [pixels] to either side: ink ends within
 SOFT = 0.5  # of a stain's darkness: less than this changes there
 SPECK = 3.5  # pen widths
-PINHOLE = 0.3
 GRAIN = 1.0  # squares of the pen width: larger holes are no grain,
 WITHIN = 1.0  # pen widths from the paper: nothing within one line, nor where two cross, is as far,
 PINHOLE = 0.3  # squares of the pen width: and nobody draws around a smaller hole
