@@ -50,12 +50,13 @@ class Bodies:
 
     def __init__(self, drawn: list[Drawn]) -> None:
         self.drawn = drawn
-        self._low = np.array([d.outline.min(axis=0) for d in drawn]).reshape(-1, 2)
-        self._high = np.array([d.outline.max(axis=0) for d in drawn]).reshape(-1, 2)
+        boxes = [[*d.outline.min(axis=0), *d.outline.max(axis=0)] for d in drawn]
+        self._sides = np.ascontiguousarray(np.array(boxes).reshape(-1, 4).T)
 
     def near(self, at: Array, reach: float) -> list[Drawn]:
         """Those whose bounding box, widened by `reach` [pixels], has the point, in order of drawing."""
-        close = ((self._low - reach <= at) & (self._high + reach >= at)).all(axis=1)
+        (x, y), (left, low, right, high) = at.tolist(), self._sides
+        close = (left - reach <= x) & (right + reach >= x) & (low - reach <= y) & (high + reach >= y)
         return [self.drawn[k] for k in np.flatnonzero(close).tolist()]
 
 

@@ -104,7 +104,8 @@ def _view(sketch: Sketch, scale: float | None) -> tuple[View, float]:
 def _extent(sketch: Sketch) -> float:
     """The longer side of the box around all ink [pixels], which may be larger than the page."""
     ink = np.concatenate([np.empty((0, 2)), *(s.points for s in sketch.strokes)])
-    return float(np.ptp(ink, axis=0).max()) if len(ink) else 0.0
+    # by columns: numpy takes the least of short rows in four times as long
+    return float(np.ptp(np.ascontiguousarray(ink.T), axis=1).max()) if len(ink) else 0.0
 
 
 def _number(drawn: list[Drawn], joints: list[Joint]) -> None:

@@ -34,6 +34,7 @@ __all__ = [
     "place",
     "ring",
     "touch",
+    "words",
 ]
 
 Array = NDArray[np.float64]
@@ -57,6 +58,9 @@ _heads = ctypes.CFUNCTYPE(None, _int, *[_pointer] * 5, _int, _pointer, *[_double
 )
 _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
     ("ink_beside", _lib)
+)
+_words = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, *[_pointer] * 4, ctypes.c_int64)(
+    ("ink_words", _lib)
 )
 _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
 _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, _pointer)(
@@ -383,3 +387,19 @@ def depth(x: float, y: float, outline: Array) -> float:
 def touch(one: Array, other: Array, at: Point, reach: float, near: float) -> bool:
     """Whether two closed outlines, (n, 2), overlap or come nearer than `near` within `reach` of a point [pixels]."""
     return bool(_touch(address(one), len(one), address(other), len(other), *at, reach, near))
+
+
+def words(strokes: Strokes, names: Sequence[int]) -> list[list[int]]:
+    """Pairs of some strokes that may be in one word (see core/words.c)."""
+    which = np.array(names, dtype=np.int32)
+    rows = strokes.measure[which]
+    boxes, extents = rows[:, 1:5].copy(), 3 * rows[:, 6]
+    ink = address(which), len(which), address(boxes), address(extents), address(strokes.samples)
+    room = 16 * len(which)
+    while True:
+        pairs = np.empty((room, 2), dtype=np.int32)
+        count = _words(*ink, address(pairs), room)
+        if count <= room:
+            found: list[list[int]] = which[pairs[:count]].tolist()
+            return found
+        room = count

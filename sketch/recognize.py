@@ -249,17 +249,23 @@ def _whole_arrows(chosen: list[tuple[Fitted, float]]) -> list[tuple[Fitted, floa
     others = [t for t in chosen if t[0].kind != "arrow"]
     whole: list[tuple[Fitted, float]] = []
     for arrow, gain in sorted(arrows, key=lambda t: -t[1]):
+        ends = arrow.outline.tolist()
         for k, (kept, its) in enumerate(whole):
-            apart = np.hypot(*(arrow.outline - kept.outline).T).max()
-            if apart < SAME_PLACE * math.dist(*kept.outline.tolist()):
+            its_ends = kept.outline.tolist()
+            if max(map(math.dist, ends, its_ends)) < SAME_PLACE * math.dist(*its_ends):
                 whole[k] = replace(kept, pieces=tuple(sorted((*kept.pieces, *arrow.pieces)))), its + gain
                 break
         else:
             whole.append((arrow, gain))
+    bars = [t for t in others if t[0].kind == "bar" and len(t[0].outline) == 2]
+    at = np.array([bar.outline for bar, _ in bars]).reshape(-1, 2, 2)
     for k, (arrow, gain) in enumerate(whole):
-        for bar in [t for t in others if t[0].kind == "bar" and len(t[0].outline) == 2]:
+        tail, tip = arrow.outline
+        lift = np.hypot(*(at - tail).transpose(2, 0, 1)).min(axis=1)
+        near = np.flatnonzero(lift < 1.001 * LIFT * np.hypot(*(at - tip).transpose(2, 0, 1)).max(axis=1))
+        for bar in (bars[n] for n in near.tolist()):
             tail = _tail_beyond(arrow, bar[0])
-            if tail is not None:
+            if tail is not None and bar in others:
                 others.remove(bar)
                 pieces = tuple(sorted((*arrow.pieces, *bar[0].pieces)))
                 longer = replace(arrow, pieces=pieces, outline=np.array([tail, arrow.outline[1]]))

@@ -4,12 +4,13 @@ crosses among them. A line with a mark at either end says how long something is.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from bisect import bisect_right
+from collections.abc import Sequence, Set
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.kernel import depth
+from sketch.kernel import depth, words
 from sketch.pieces import Page, Piece
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
@@ -18,16 +19,12 @@ __all__ = ["LARGEST", "WRITTEN", "written"]
 
 Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
-Rows = dict[int, set[int]]  # of each small stroke those that mean nothing in the row that it stands in
 
 # nats that another thing in a row is likelier a letter, for each stroke there that means nothing
 WRITTEN = 60.0
 LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
-BETWEEN = 1.0  # of the larger one's extent: what is between the strokes of a word, or of two, at most
-UNLIKE = 4.0  # times that strokes of one word are as large as others: a letter's bar, and its stem
 TALL = 2.2  # times that a thing in a word is as large as the largest stroke there, at most
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
-FEW = 16  # points of a stroke that are compared with others
 MEASURE = 30.0  # nats that a line with a mark at either end is no rod
 MARK = 0.25  # of its length: as large as those are,
 AT_END = 0.05  # and as near to its ends,
@@ -41,22 +38,25 @@ def written(
 
     told: the gains of all that is proposed.  likely: which of it the ink makes likely.
     """
-    chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in likely]
+    chosen = [(proposed[p].candidates[k], told[p][k], proposed[p].rows[k]) for p, k in likely]
     # an X loses by its surroundings where no body is
-    crosses = {c for (c, gain), (p, k) in zip(chosen, likely, strict=True) if gain < proposed[p].gains[k]}
+    crosses = {c for (c, gain, _), (p, k) in zip(chosen, likely, strict=True) if gain < proposed[p].gains[k]}
     idle = page.pieces.keys() - {
-        i for c, _ in chosen if c.kind != "bar" and not (c.kind == "cross" and c in crosses) for i in c.pieces
+        i
+        for c, *_ in chosen
+        if c.kind != "bar" and not (c.kind == "cross" and c in crosses)
+        for i in c.pieces
     }
     if not idle:
         return told
-    marks = _Marks(chosen, [proposed[p].rows[k] for p, k in likely], LARGEST * page.drawn)
-    small = _Small(page, [p for p in page.pieces.values() if p.extent < marks.largest])
+    marks = _Marks(page, [(c, row) for c, _, row in chosen], LARGEST * page.drawn)
+    near = _near(page, marks.largest)
     while True:
-        rows = small.rows(idle)
+        rows = _Rows(page, near, idle)
         lost = {
             i
-            for c, gain in chosen
-            if not rows.keys().isdisjoint(c.pieces) and gain < marks.loss(page, rows, c)
+            for c, gain, row in chosen
+            if not rows.of.keys().isdisjoint(c.pieces) and gain < marks.loss(rows, c, row[4])
             for i in c.pieces
         }
         if lost <= idle:
@@ -65,15 +65,15 @@ def written(
     lone = [page.pieces[i] for i in sorted(idle)]
     lines = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
     measured = {i for bar in lines if idle.issuperset(bar.pieces) for i in _measured(page, bar, lone)}
-    touched = rows.keys() | measured
+    touched = rows.of.keys() | measured
     out = list(told)
     for n, p in enumerate(proposed):
         if touched.isdisjoint(p.alone.pieces):
             continue
         own = out[n] = list(told[n])
-        for k, c in enumerate(p.candidates):
+        for k, (c, row) in enumerate(zip(p.candidates, p.rows, strict=True)):
             if own[k] > 0 and not touched.isdisjoint(c.pieces):
-                own[k] -= marks.loss(page, rows, c)
+                own[k] -= marks.loss(rows, c, row[4])
                 own[k] -= MEASURE * (c.kind == "bar" and not measured.isdisjoint(c.pieces))
     return out
 
@@ -85,26 +85,25 @@ class _Marks:
         largest: of what is written [pixels].
     """
 
-    def __init__(self, likely: Sequence[tuple[Fitted, float]], rows: Sequence[Row], largest: float) -> None:
-        """rows: where those that are likely lie, as of `Proposed`."""
+    def __init__(self, page: Page, likely: Sequence[tuple[Fitted, Row]], largest: float) -> None:
+        """likely: with where they lie, as of `Proposed`."""
         self.largest = largest
+        self._page = page
         self._bodies = [c for c, _ in likely if c.closed]
-        where = np.array([row for (c, _), row in zip(likely, rows, strict=True) if c.closed]).reshape(-1, 5)
+        where = np.array([row for c, row in likely if c.closed]).reshape(-1, 5)
         self._boxes, self._extents = where[:, :4], where[:, 4]
         self._known: dict[Fitted, bool] = {}
 
-    def loss(self, page: Page, rows: Rows, c: Fitted) -> float:
+    def loss(self, rows: _Rows, c: Fitted, extent: float) -> float:
         """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in."""
-        beside = set[int]().union(*(rows.get(i, ()) for i in c.pieces)).difference(c.pieces)
-        if not beside or c.kind == "arrow":
+        if extent >= self.largest or c.kind == "arrow":
             return 0.0
-        extent = _extent(c)
-        said = WRITTEN * sum(extent < TALL * page.pieces[i].extent for i in beside)
-        if not said or extent >= self.largest:
+        beside = rows.beside(c.pieces, extent)
+        if not beside:
             return 0.0
         if c not in self._known:
             self._known[c] = self._may_be_written(c, extent)
-        return said if self._known[c] else 0.0
+        return WRITTEN * beside if self._known[c] else 0.0
 
     def _may_be_written(self, c: Fitted, extent: float) -> bool:
         """Whether it is no X on a body, and no pivot: of two bodies, or the only one of its body."""
@@ -137,50 +136,40 @@ def _extent(c: Fitted) -> float:
     return math.dist(c.outline.min(axis=0), c.outline.max(axis=0))
 
 
-class _Small:
-    """The strokes that may be in a row, to be asked which stand in one."""
+def _near(page: Page, largest: float) -> dict[int, list[int]]:
+    """Of each stroke smaller than `largest` [pixels] the others that may be in one word with it."""
+    near: dict[int, list[int]] = {i: [] for i, p in page.pieces.items() if p.extent < largest}
+    for i, j in words(page.strokes, list(near)):
+        near[i].append(j)
+        near[j].append(i)
+    return near
 
-    def __init__(self, page: Page, pieces: Sequence[Piece]) -> None:
-        self._page, self._pieces = page, {p.index: p for p in pieces}
-        self._indices = np.array([p.index for p in pieces], dtype=np.intp)
-        self._boxes = np.array([p.box for p in pieces]).reshape(-1, 4)
-        self._extents = np.array([p.extent for p in pieces])
-        self._near: dict[int, list[int]] = {}
 
-    def rows(self, idle: Collection[int]) -> Rows:
-        """idle: the strokes that mean nothing."""
-        left, rows = set(self._pieces), Rows()
-        for start in sorted(idle):
-            if start not in left:
+class _Rows:
+    """The rows in which small strokes stand, near one another, with some that mean nothing: these are idle."""
+
+    def __init__(self, page: Page, near: dict[int, list[int]], idle: Set[int]) -> None:
+        """near: of each small stroke the others that may be in one word with it."""
+        self.of: dict[
+            int, list[float]
+        ] = {}  # by stroke: TALL times the extents of the idle ones in its row, in order
+        self._idle = {i: TALL * page.pieces[i].extent for i in near.keys() & idle}
+        for start in self._idle:
+            if start in self.of:
                 continue
-            left.remove(start)
+            tall = self.of[start] = []
             row = [start]
             for i in row:  # it grows meanwhile
-                near = [j for j in self.near(i) if j in left]
-                left.difference_update(near)
-                row += near
-            its = {i for i in row if i in idle}
-            rows.update((i, its) for i in row)
-        return rows
+                new = [j for j in near[i] if j not in self.of]
+                self.of.update((j, tall) for j in new)
+                row += new
+            tall += sorted(self._idle[i] for i in row if i in self._idle)
 
-    def near(self, i: int) -> list[int]:
-        """The strokes that are as near to one, and as alike in size, as those of a word."""
-        if i not in self._near:
-            p = self._pieces[i]
-            large = np.maximum(p.extent, self._extents)
-            reach = BETWEEN * large[:, None]
-            close = (self._boxes[:, :2] < p.box[2:] + reach) & (self._boxes[:, 2:] > p.box[:2] - reach)
-            close[:, 0] &= large <= UNLIKE * np.minimum(p.extent, self._extents)
-            some = self._indices[close.all(axis=1)].tolist()
-            self._near[i] = [j for j in some if j != i and self._joins(p, self._pieces[j])]
-        return self._near[i]
-
-    def _joins(self, p: Piece, q: Piece) -> bool:
-        """Whether the ink of two strokes is no further apart than that of a word."""
-        one, other = (self._page.strokes.samples[r.stroke] for r in (p, q))
-        step = max(len(one) // FEW, 1)
-        gaps = one[::step, None] - other[None, ::step]
-        return bool((gaps**2).sum(axis=2).min() < (BETWEEN * max(p.extent, q.extent)) ** 2)
+    def beside(self, pieces: Sequence[int], extent: float) -> int:
+        """How many idle strokes, large enough for one of some extent [pixels], some strokes stand in a row with."""
+        its = {id(row): row for i in pieces if (row := self.of.get(i))}
+        own = sum(extent < self._idle[i] for i in pieces if i in self._idle)
+        return sum(len(row) - bisect_right(row, extent) for row in its.values()) - own
 
 
 def _boxes_near(p: Piece, q: Piece, reach: float) -> bool:
