@@ -177,24 +177,31 @@ def _likeliest(
     It lies near where the ink goes on to from either side, and the ways to it make a step (Gauss-Newton, begun
     at `corner`).
     """
+    # of both lines: where they begin, which way they go, and how far apart the points are that tell it
+    lines = [
+        (near, (near - far) / abs(near - far), abs(near - far)) for far, near in ((before, a), (behind, b))
+    ]
+    along, across = OFF * step, LONGER * step
     said = 0.0
     for _ in range(NEWTON):
         off: list[tuple[float, complex]] = []  # in spreads, and the way in which it grows, by pixels
-        for far, near in ((before, a), (behind, b)):
-            way = (near - far) / abs(near - far)
+        for near, way, apart in lines:
             on = (corner - near) * way.conjugate()
-            ahead = max(on.real, 0.0) / abs(near - far)
-            spread = OFF * step * math.hypot(1 + ahead, ahead)  # of a line through two points, so far beyond
+            ahead = max(on.real, 0.0) / apart
+            spread = along * math.hypot(1 + ahead, ahead)  # of a line through two points, so far beyond
             off.append((on.imag / spread, 1j * way / spread))
             if on.real < 0:  # not back on the way that the ink has come
-                off.append((on.real / (OFF * step), way / (OFF * step)))
-        legs = [max(abs(corner - end), 1e-9) for end in (a, b)]
-        longer = sum((corner - end) / leg for end, leg in zip((a, b), legs, strict=True))
-        off.append(((sum(legs) - step) / (LONGER * step), longer / (LONGER * step)))
-        said = sum(o * o for o, _ in off) / 2
-        down = sum(o * n for o, n in off)
-        xx, yy = (sum(x * x for x in part) for part in ([n.real for _, n in off], [n.imag for _, n in off]))
-        xy = sum(n.real * n.imag for _, n in off)
+                off.append((on.real / along, way / along))
+        first, second = corner - a, corner - b
+        one, other = max(abs(first), 1e-9), max(abs(second), 1e-9)
+        off.append(((one + other - step) / across, (first / one + second / other) / across))
+        squares = xx = xy = yy = 0.0
+        down = 0j
+        for o, n in off:  # in one loop: this is what strokes of few points take
+            squares += o * o
+            down += o * n
+            xx, xy, yy = xx + n.real * n.real, xy + n.real * n.imag, yy + n.imag * n.imag
+        said = squares / 2
         det = xx * yy - xy * xy
         if det < 1e-12 * (xx + yy) ** 2:
             break
