@@ -53,10 +53,11 @@ def things_in(points: Array) -> list[Array]:
     coarse = whole.observations * max(math.log(whole.scale / scale), 0.0)
     most = replace(whole, scale=min(scale, whole.scale), observations=count).unread
     said = CUT * (len(kinds) - 1) + sum(least)  # at least
-    for meant in _meant(page, whole):
-        most = min(most, max(count / whole.observations, 1.0) * meant + coarse)
-        if said >= most:
-            return [points]
+    if said < most:  # seldom: so it isn't read before that is known
+        for meant in _meant(page, whole):
+            most = min(most, max(count / whole.observations, 1.0) * meant + coarse)
+            if said >= most:
+                return [points]
     for p, bound in zip(things, least, strict=True):
         if said >= most:
             return [points]

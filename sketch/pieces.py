@@ -23,6 +23,8 @@ OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wi
 
 Array = NDArray[np.float64]
 
+NOTHING = measure([])
+
 
 @dataclass(frozen=True, eq=False)
 class Piece:
@@ -104,7 +106,7 @@ class Page:
         """canvas: its diagonal [pixels], or 0."""
         self.rivals = rivals
         self.pieces: dict[int, Piece] = {}
-        self.strokes = measure([])
+        self.strokes = NOTHING
         self.size = self.drawn = self._canvas = canvas
         self.ends = LooseEnds(rivals)
         self.looked = Looked()
