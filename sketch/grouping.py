@@ -132,13 +132,13 @@ def shafts(page: Page, p: Piece) -> Iterator[Shaft]:
     """A piece as an arrow's shaft, with others that may be its head."""
     if p.length > 1.3 * p.extent:  # the whole arrow in one stroke
         for k in (3, 4, 5):
-            v = p.vertices[k]
+            v = p.corners(k)
             yield Shaft((p.index,), (0, 0), _point(v[0]), _point(v[1]))
             yield Shaft((p.index,), (0, 0), _point(v[k]), _point(v[k - 1]))
     if p.length > 2.5 * p.extent:
         return
     if p.straight > 0.06:  # the shaft and one barb in one stroke
-        v = p.vertices[2]
+        v = p.corners(2)
         ends, heads = ((_point(v[0]), _point(v[1])), (_point(v[2]), _point(v[1]))), (1, 1)
     else:
         ends, heads = (p.ends, (p.ends[1], p.ends[0])), (1, 2)

@@ -63,7 +63,7 @@ def read_bar(piece: Piece) -> Fitted | None:
         cost = misfit_of(piece, piece.residual[k]) + bowed + said + BEND * (k - 1)
         if cost > best:
             continue
-        cost += SHARP * _turning(piece.vertices[k][: k + 1])
+        cost += SHARP * _turning(piece.corners(k))
         if cost < best:
             best, segments = cost, k
     return Fitted("bar", (piece.index,), best + RARE, piece.line(segments))
@@ -145,7 +145,7 @@ def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fi
         sides = [
             (part, k, a, b, math.dist(a, b))
             for part, (p, n) in enumerate(zip(parts, bends, strict=True))
-            for k, (a, b) in enumerate(pairwise(p.vertices[n][: n + 1]))
+            for k, (a, b) in enumerate(pairwise(p.corners(n)))
         ]
         for (part, k, a, b, long), (other, m, c, d, wide) in combinations(sides, 2):
             if part == other and (m < k + 2 or len(parts) == 2):

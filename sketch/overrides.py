@@ -86,7 +86,7 @@ def _line(piece: Piece) -> np.ndarray:
 def _bars(pieces: list[Piece]) -> np.ndarray:
     if len(pieces) > 1:
         return np.concatenate([p.line(1) for p in pieces[:2]])
-    return np.array(pieces[0].vertices[3][:4])
+    return pieces[0].line(3)
 
 
 def _around(page: Page, pieces: list[Piece]) -> Chain:

@@ -44,7 +44,7 @@ class Piece:
         observations: how many independent observations its ink is worth: neighbouring points err together, over
             a distance that goes with the size of what is drawn.
         residual: mean squared distance from its best polyline of k segments [pixels²], k from 1.
-        vertices: of those polylines: vertices[k][:k + 1].
+        vertices: of those polylines: vertices[k, :k + 1].
     """
 
     index: int
@@ -58,7 +58,7 @@ class Piece:
     scale: float
     observations: float
     residual: list[float]
-    vertices: list[list[list[float]]]
+    vertices: Array
 
     @property
     def straight(self) -> float:
@@ -72,7 +72,12 @@ class Piece:
 
     def line(self, k: int) -> Array:
         """Its best polyline of k segments [pixels], (k + 1, 2)."""
-        return np.array(self.vertices[k][: k + 1])
+        return self.vertices[k, : k + 1].copy()
+
+    def corners(self, k: int) -> list[list[float]]:
+        """The same as numbers. Few are asked for: they are not kept."""
+        corners: list[list[float]] = self.vertices[k, : k + 1].tolist()
+        return corners
 
 
 @dataclass(eq=False, slots=True)
@@ -128,11 +133,11 @@ class Page:
         begins = np.concatenate([[0], new.ends[:-1]])[:count]
         places = np.stack([new.points.ctypes.data + 16 * begins, new.ends - begins], axis=1)
         self._points = np.concatenate([self._points, places])
-        residuals, vertices = new.residual.tolist(), new.vertices.tolist()
+        residuals = new.residual.tolist()
         for k, m in enumerate(new.measure.tolist()):
             if m[6] > 0:  # of a length, and not so tiny that nothing is left of its square
                 i = first + k
-                self.pieces[i] = _piece(i, i, points[k], m, residuals[k], vertices[k], self._dot)
+                self.pieces[i] = _piece(i, i, points[k], m, residuals[k], new.vertices[k], self._dot)
                 piece = self.pieces[i]
                 self._boxes[i], ends[k] = piece.box, piece.ends
                 self._sizes[i] = max(piece.scale, piece.extent / 2)
@@ -217,7 +222,7 @@ def _piece(
     points: Array,
     m: list[float],
     residual: list[float],
-    vertices: list[list[list[float]]],
+    vertices: Array,
     dot: float,
 ) -> Piece:
     length, x0, y0, x1, y1, gap, spread, across = m
