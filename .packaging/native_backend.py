@@ -11,6 +11,7 @@ Run as a script it compiles the libraries in place, for development::
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shlex
 import shutil
@@ -86,6 +87,11 @@ def compile_library(name: str, built: Path, sanitize: bool = False) -> None:
         )
 
 
+def in_place(name: str) -> Path:
+    """The library beside the package that loads it, in the source folder."""
+    return ROOT / (name.replace(".", "/") + SUFFIX)
+
+
 class BuildLibraries(build_ext):
     """Compiles the shared libraries, named without a Python version."""
 
@@ -93,7 +99,15 @@ class BuildLibraries(build_ext):
         return fullname.replace(".", os.sep) + SUFFIX
 
     def build_extension(self, ext) -> None:
-        compile_library(ext.name, Path(self.get_ext_fullpath(ext.name)))
+        built, here = Path(self.get_ext_fullpath(ext.name)), in_place(ext.name)
+        compile_library(ext.name, built)
+        if built.resolve() == here:
+            return
+        # A Python that is started in the source folder finds the packages there before those that are installed.
+        with contextlib.suppress(OSError):  # a source folder may be read-only
+            beside = here.with_name(f"{here.name}.{os.getpid()}")
+            shutil.copy2(built, beside)
+            os.replace(beside, here)  # whole: a process may be running the old one
 
 
 class AnyPythonWheel(bdist_wheel):
@@ -122,5 +136,4 @@ get_requires_for_build_editable = get_requires_for_build_wheel
 
 if __name__ == "__main__":
     for library in FOLDERS:
-        target = ROOT / (library.replace(".", "/") + SUFFIX)
-        compile_library(library, target, sanitize="--sanitize" in sys.argv[1:])
+        compile_library(library, in_place(library), sanitize="--sanitize" in sys.argv[1:])

@@ -19,9 +19,12 @@ _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 @functools.cache
 def library() -> ctypes.CDLL:
-    """The library; raises ImportError where it was built from other sources than this package."""
+    """The library; raises ImportError where there is none, or one built from other sources than this package."""
     path = Path(__file__).with_name("_ink" + _SUFFIX)
-    found = ctypes.CDLL(str(path))
+    try:
+        found = ctypes.CDLL(str(path))
+    except OSError as e:
+        raise ImportError(f"the ink library does not load ({e}); install the project again") from None
     if not hasattr(found, "ink_abi") or found.ink_abi() != ABI:
         raise ImportError(f"{path.name} does not belong to this version; install the project again")
     return found

@@ -182,6 +182,25 @@ def test_one_wheel_serves_every_python(backend: ModuleType) -> None:
     assert build.get_ext_filename("sim._core") == os.path.join("sim", "_core") + backend.SUFFIX
 
 
+def test_what_is_built_for_the_wheel_also_serves_a_python_started_in_the_source_folder(
+    backend: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """There `import sketch` finds the source folder's package, not the one that was installed."""
+    from setuptools import Distribution, Extension
+
+    source, wheel = tmp_path / "source", tmp_path / "wheel"
+    (source / "sketch").mkdir(parents=True)
+    (wheel / "sketch").mkdir(parents=True)
+    monkeypatch.setattr(backend, "ROOT", source)
+    monkeypatch.setattr(backend, "compile_library", lambda name, built: built.write_bytes(b"built"))
+    build = backend.BuildLibraries(Distribution({"name": "x"}))
+    build.build_lib = str(wheel)
+    build.build_extension(Extension("sketch._ink", []))
+    found = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert sorted(found) == [folder / "sketch" / f"_ink{backend.SUFFIX}" for folder in (source, wheel)]
+    assert {path.read_bytes() for path in found} == {b"built"}
+
+
 @pytest.mark.slow
 def test_the_wheel_holds_all_that_runs_and_no_sources(tmp_path: Path) -> None:
     import zipfile
