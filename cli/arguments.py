@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 __all__ = [
+    "STDIN",
     "Parser",
     "PrintVersion",
     "UsageError",
@@ -20,6 +21,7 @@ __all__ = [
     "whole_number",
 ]
 
+STDIN = "-"
 MAX_SIDE = 7680  # 8K; beyond it players and H.264 levels give up
 
 

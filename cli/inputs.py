@@ -5,11 +5,11 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from cli.arguments import UsageError
+from cli.arguments import STDIN, UsageError
 from sim.scene import InputError, Scene
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Loaded", "Way", "load", "load_bytes", "naming", "read", "recognize_bytes"]
 
-STDIN = "-"
 MAX_BYTES = 64 << 20  # of any input: a photo of 12 megapixels has 2 to 15 MB
 
 
@@ -33,7 +32,7 @@ class Way:
     """
 
     scale: float | None = None
-    readings: Sequence[tuple[tuple[int, ...], str]] = ()
+    readings: Mapping[int | tuple[int, ...], str] = field(default_factory=dict)
     page: int = 1
     index: int | None = None
     tidy: bool = False
@@ -43,7 +42,18 @@ class Way:
     def of(cls, options: argparse.Namespace) -> Way:
         """From the options of add_input_options."""
         stages = getattr(options, "stages", None)
-        return cls(options.scale, options.read, options.page, options.index, options.tidy, stages)
+        readings = _readings(options.read)
+        return cls(options.scale, readings, options.page, options.index, options.tidy, stages)
+
+
+def _readings(given: Iterable[tuple[tuple[int, ...], str]]) -> dict[int | tuple[int, ...], str]:
+    """What --read says, which may be given several times, but once of the same strokes."""
+    readings: dict[int | tuple[int, ...], str] = {}
+    for strokes, kind in given:
+        if readings.setdefault(strokes, kind) != kind:
+            name = ",".join(map(str, strokes))
+            raise UsageError(f"--read {name}: it cannot be both {readings[strokes]} and {kind}")
+    return readings
 
 
 @dataclass(frozen=True)
@@ -132,7 +142,7 @@ def recognize_bytes(data: bytes, way: Way) -> Recognition:
     if way.scale is not None:
         sketch = dataclasses.replace(sketch, pixels_per_metre=way.scale)
     try:
-        return recognize(sketch, overrides=dict(way.readings), tidy=way.tidy)
+        return recognize(sketch, overrides=way.readings, tidy=way.tidy)
     except InputError as e:
         if e.path.startswith("overrides["):  # what the command calls --read
             raise UsageError(f"--read {e.path[10:-1]}: {e.problem}", e.hint) from None

@@ -24,33 +24,33 @@ def ending(target: str) -> str:
     return (path.suffix or (path.name if path.name.startswith(".") else "")).lower()
 
 
-def check_outputs(targets: Iterable[str], endings: Iterable[str], inputs: Iterable[str] = ()) -> None:
-    """Raise UsageError for what could not be written, before any work is done."""
+def check_outputs(
+    targets: Iterable[str], endings: Iterable[str], inputs: Iterable[str] = (), option: str = "-o"
+) -> None:
+    """Raise UsageError for what could not be written, before any work is done; `option` asked for it."""
     known = sorted(endings)
     seen: set[str] = set()
     sources = {os.path.realpath(name) for name in inputs if name != STDOUT}
     for target in targets:
+        asked = f"{option} {target}"
+        if target != STDOUT and os.path.isdir(target):
+            raise UsageError(f"{asked}: this is a folder")
         if ending(target) not in known:
             what = f"{ending(target)!r} is not a known ending" if ending(target) else "no ending"
-            raise UsageError(f"-o {target}: {what}", "the ending says what is written: " + " ".join(known))
+            raise UsageError(f"{asked}: {what}", "the ending says what is written: " + " ".join(known))
         path = target if target == STDOUT else os.path.realpath(target)
         if path in seen:
-            raise UsageError(f"-o {target}: given twice")
+            raise UsageError(f"{asked}: given twice")
         seen.add(path)
-        if target != STDOUT:
-            _check_path(target, path, sources)
-
-
-def _check_path(target: str, path: str, sources: set[str]) -> None:
-    folder = os.path.dirname(path)
-    if path in sources:
-        raise UsageError(f"-o {target}: this is the input itself")
-    if os.path.isdir(path):
-        raise UsageError(f"-o {target}: this is a folder")
-    if not os.path.isdir(folder):
-        raise UsageError(f"-o {target}: there is no folder {os.path.dirname(target)}", "make it first")
-    if not os.access(folder, os.W_OK | os.X_OK):
-        raise UsageError(f"-o {target}: the folder {os.path.dirname(target) or '.'} cannot be written to")
+        if target == STDOUT:
+            continue
+        if path in sources:
+            raise UsageError(f"{asked}: this is the input itself")
+        folder, named = os.path.dirname(path), os.path.dirname(target) or "."
+        if not os.path.isdir(folder):
+            raise UsageError(f"{asked}: there is no folder {named}", "make it first")
+        if not os.access(folder, os.W_OK | os.X_OK):
+            raise UsageError(f"{asked}: the folder {named} cannot be written to")
 
 
 class Outputs:

@@ -90,7 +90,7 @@ def run(options: argparse.Namespace) -> int:
             if done.error:
                 kinds.add(done.kind)
                 progress.clear()
-                error(f"{done.task}: {done.error}", done.kind, done.hint)
+                error(done.error, done.kind, done.hint)
                 continue
             with Outputs() as files:
                 for ending, content in done.files.items():
@@ -145,27 +145,37 @@ def _tasks_in(path: Path) -> Iterator[Task]:
 
 
 def _is_one_a_line(data: bytes) -> bool:
-    """Whether the first two lines are JSON objects each by itself."""
-    lines = [line.strip() for line in data.split(b"\n", 2)[:2]]
-    return len(lines) == 2 and all(line[:1] == b"{" and line[-1:] == b"}" for line in lines)
+    """Whether the first line is a JSON object by itself, and more stands below it."""
+    import json
+
+    first, _, rest = data.lstrip().partition(b"\n")
+    if first[:1] != b"{" or not rest.strip():
+        return False
+    try:
+        json.loads(first)
+    except ValueError:  # a document over several lines
+        return False
+    return True
 
 
 def work(task: Task, settings: dict[str, Any]) -> Done:
     """Read and run one task. Errors of the input are part of the result; it runs in any process."""
     from cli.commands.simulate import motion_of
-    from cli.inputs import Way, is_scene, load_bytes, read
+    from cli.inputs import Way, is_scene, load_bytes, naming, read
     from sim.scene import InputError
 
     options = argparse.Namespace(**settings)
     notes: list[str] = []
     try:
-        data = read(task.source) if task.line is None else task.line
-        loaded = load_bytes(data, task.source, Way(None if is_scene(data) else options.scale))
-        motion = motion_of(loaded, options, notes.append)
+        with naming(task.source, True):
+            data = read(task.source) if task.line is None else task.line
+            loaded = load_bytes(data, task.source, Way(None if is_scene(data) else options.scale))
+            motion = motion_of(loaded, options, notes.append)
     except InputError as e:
         return Done(task.name, {}, notes, str(e), e.kind, e.hint)
     except Exception as e:  # whatever is wrong with one, the others are run
-        return Done(task.name, {}, notes, f"something inside failed: {type(e).__name__}: {e}", "inside")
+        problem = f"{task.source}: something inside failed: {type(e).__name__}: {e}"
+        return Done(task.name, {}, notes, problem, "inside")
     content = getattr(motion, DATA[f".{options.data}"])()
     return Done(task.name, {".scene.json": loaded.scene.to_json(), f".{options.data}": content}, notes)
 

@@ -45,17 +45,18 @@ def run(options: argparse.Namespace) -> int:
     if output is not None:
         check_outputs([output], (".json",), [options.input])
     if options.overlay is not None:
-        check_outputs([options.overlay], (".png",), [options.input])
+        check_outputs([options.overlay], (".png",), [options.input], "--overlay")
     from cli.inputs import Way, is_scene, read, recognize_bytes
     from cli.progress import note
     from sim.scene import InputError
 
+    way = Way.of(options)
     data = read(options.input)
     if is_scene(data):
         raise InputError(
             "", f"{options.input} is a scene already", "`sketchsim simulate` runs it", kind="format"
         )
-    recognition = recognize_bytes(data, Way.of(options))
+    recognition = recognize_bytes(data, way)
     for text in recognition.scene.notes:
         note(text)
     with Outputs() as files:

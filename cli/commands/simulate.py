@@ -11,8 +11,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cli.arguments import UsageError, add_input_options, number, picture_size, vector
-from cli.outputs import STDOUT, Outputs, check_outputs, ending
+from cli.arguments import STDIN, UsageError, add_input_options, number, picture_size, vector
+from cli.outputs import Outputs, check_outputs, ending
 from cli.results import ENDINGS, SEEN, Look, Run
 
 if TYPE_CHECKING:
@@ -76,8 +76,11 @@ def configure(p: argparse.ArgumentParser) -> None:
         metavar="fit|follow:ID",
         help="follow keeps a body in the middle",
     )
-    p.add_argument("-q", "--quiet", action="store_true", help="no notes and no progress")
-    p.add_argument("-v", "--verbose", action="store_true", help="say what was done and how long it took")
+    loudness = p.add_mutually_exclusive_group()
+    loudness.add_argument("-q", "--quiet", action="store_true", help="no notes and no progress")
+    loudness.add_argument(
+        "-v", "--verbose", action="store_true", help="say what was done and how long it took"
+    )
     p.set_defaults(run=run)
 
 
@@ -103,6 +106,8 @@ def add_run_options(p: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    if options.inputs.count(STDIN) > 1:
+        raise UsageError("-: standard input is read once, and was named twice")
     targets = [_targets(source, options) for source in options.inputs]
     check_outputs([target for each in targets for target in each], ENDINGS, options.inputs)
     check_samples(options)
@@ -134,6 +139,8 @@ def _simulate(source: str, targets: list[str], options: argparse.Namespace) -> N
                 result.write(files, target, partial(progress.say, f"drawing {target}"))
         if options.verbose:
             note(f"wrote {' '.join(targets)} in {time.perf_counter() - began:.3f} s")
+        elif not options.outputs:
+            tell(f"wrote {' '.join(targets)}")
         still = [target for target in targets if ending(target) in (".png", ".svg")]
         if options.vectors and still:
             tell(f"{' '.join(still)}: vectors are drawn where the motion is played")
@@ -154,7 +161,7 @@ def run_of(
     motion = motion_of(loaded, options, tell)
     if look.style == "ink" and loaded.recognition is None:
         tell("a scene has no ink to move: bodies are drawn plain")
-    title = Path(source).stem if source != STDOUT else "sketch"
+    title = Path(source).stem if source != STDIN else "sketch"
     return Run(title, loaded.scene, motion, options.fps, look, loaded.recognition)
 
 
@@ -239,7 +246,7 @@ def _tell_profile(result: Run, tell: Callable[[str], object]) -> None:
 
 def _targets(source: str, options: argparse.Namespace) -> list[str]:
     """The files of one input; an OUT that is an ending alone gets the input's name."""
-    name = "sketch" if source == STDOUT else Path(source).stem or "sketch"
+    name = "sketch" if source == STDIN else Path(source).stem or "sketch"
     targets = []
     for out in options.outputs or [".mp4"]:
         path = Path(out)

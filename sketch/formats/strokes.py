@@ -21,7 +21,7 @@ __all__ = ["from_objects", "read"]
 
 MAX_BYTES = 24 << 20
 MAX_POINTS = 1_000_000  # a page of 200 strokes of 500 points has a tenth of that
-MAX_STROKES = 20_000
+MAX_STROKES = 5_000  # in a machine there are some hundred; as many lines as this, all crossing, take minutes
 MAX_COORDINATE = 1e7  # pixels: squares and fourth powers of it stay exact enough
 
 _LAYOUT = 'a stroke is {"points": [[x, y], ...]}, a list of points, or {"x": [...], "y": [...]}'

@@ -85,14 +85,25 @@ def test_what_cannot_be_read_is_told_and_the_rest_is_run(
     ]
     assert main([*argv, "--workers", "2"]) == 3
     errors = capsys.readouterr().err.splitlines()
-    assert errors[0].startswith("error: s1: bodies[0].")
-    assert errors[-1] == f"error: gone: {folder / 'gone.json'}: there is no such file [file]"
+    assert errors[0].startswith(f"error: {folder / 's1.json'}: bodies[0].")
+    assert errors[-1] == f"error: {folder / 'gone.json'}: there is no such file [file]"
     assert sorted(path.name for path in out.iterdir()) == [
         "s0.csv",
         "s0.scene.json",
         "s2.csv",
         "s2.scene.json",
     ]
+
+
+def test_a_bad_line_is_told_and_the_others_are_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = folder / "many.jsonl"
+    lines.write_text("\n".join([json.dumps(scene_with(0)), "{oops", json.dumps(scene_with(1))]))
+    out = folder.parent / "runs"
+    argv = ["batch", str(lines), "-o", str(out), "--data", "csv", "--duration", "1", "--workers", "1"]
+    assert main(argv) == 3
+    (error,) = capsys.readouterr().err.splitlines()
+    assert error.startswith(f"error: {lines} line 2: ")
+    assert sorted(path.name for path in out.glob("*.csv")) == ["many-1.csv", "many-3.csv"]
 
 
 def test_inputs_of_one_name_keep_their_files_apart(folder: Path) -> None:

@@ -51,6 +51,8 @@ def stderr_of(capsys: pytest.CaptureFixture[str]) -> list[str]:
         (["--page", "2"], "error: --page, --index: {scene} is a scene, there are no others in it"),
         (["-o", "nowhere/run.mp4"], "error: -o nowhere/run.mp4: there is no folder nowhere"),
         (["-o", "{scene}"], "error: -o {scene}: this is the input itself"),
+        (["-o", "."], "error: -o .: this is a folder"),
+        (["-q", "-v"], "error: -v/--verbose: not allowed with argument -q/--quiet"),
         (["-o", "a.csv", "-o", "./a.csv"], "error: -o ./a.csv: given twice"),
     ],
 )
@@ -75,6 +77,37 @@ def test_output_that_is_a_folder(scene_file: Path, capsys: pytest.CaptureFixture
     folder.mkdir()
     assert main(["simulate", str(scene_file), "-o", str(folder)]) == 2
     assert stderr_of(capsys) == [f"error: -o {folder}: this is a folder [usage]"]
+
+
+@pytest.mark.parametrize(
+    ("argv", "line"),
+    [
+        (["simulate", "-", "-", "-o", ".csv"], "error: -: standard input is read once, and was named twice"),
+        (
+            ["recognize", "-", "--read", "3=anchor", "--read", "0=bar", "--read", "3=ball"],
+            "error: --read 3: it cannot be both anchor and ball",
+        ),
+        (
+            ["recognize", "-", "--overlay", "seen.jpg"],
+            "error: --overlay seen.jpg: '.jpg' is not a known ending",
+        ),
+    ],
+)
+def test_what_contradicts_is_told_before_standard_input_is_read(
+    argv: list[str], line: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "stdin", None)
+    assert main(argv) == 2
+    assert stderr_of(capsys)[0] == line + " [usage]"
+
+
+def test_without_outputs_the_name_of_the_video_is_told(
+    scene_file: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(scene_file.parent)
+    assert main(["simulate", scene_file.name, "--duration", "0.1", "--size", "64x64"]) == 0
+    assert stderr_of(capsys)[-1] == "note: wrote scene.mp4"
+    assert (scene_file.parent / "scene.mp4").stat().st_size > 0
 
 
 def test_an_unknown_option_names_the_help_of_its_command(capsys: pytest.CaptureFixture[str]) -> None:
