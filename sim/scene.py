@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 import os
@@ -189,17 +188,17 @@ class Scene(msgspec.Struct, kw_only=True):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write scene JSON; an existing file is replaced only once the new one is whole."""
-        import tempfile  # it loads random, hashlib and every compressor
-
-        folder = Path(path).resolve().parent
-        fd, beside = tempfile.mkstemp(dir=folder, suffix=".json")
+        target = Path(path).resolve()
+        beside = target.with_name(f".{target.name}.{os.urandom(6).hex()}")
         try:
-            with os.fdopen(fd, "wb") as f:
-                f.write(self.to_json())
-            os.replace(beside, path)
-        except BaseException:
-            with contextlib.suppress(FileNotFoundError):
-                os.unlink(beside)
+            beside.write_bytes(self.to_json())
+            if target.exists():
+                beside.chmod(target.stat().st_mode & 0o777)
+            os.replace(beside, target)
+        except BaseException as e:
+            if isinstance(e, OSError):
+                e.filename = os.fspath(path)  # what was asked for, not what is written beside it
+            beside.unlink(missing_ok=True)
             raise
 
     def check(self) -> None:

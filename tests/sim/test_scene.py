@@ -3,6 +3,7 @@
 import copy
 import json
 import math
+import os
 import random
 import time
 
@@ -139,6 +140,22 @@ def test_save_and_load(tmp_path):
     original.save(path)
     assert Scene.load(path) == original
     assert [p.name for p in tmp_path.iterdir()] == ["scene.json"]  # nothing left beside it
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the permissions of POSIX")
+def test_a_saved_scene_is_as_readable_as_any_file(tmp_path):
+    other, path = tmp_path / "other", tmp_path / "scene.json"
+    other.write_text("")
+    Scene().save(path)
+    assert path.stat().st_mode == other.stat().st_mode
+    path.chmod(0o640)
+    Scene().save(path)
+    assert path.stat().st_mode & 0o777 == 0o640
+
+
+def test_a_scene_that_cannot_be_saved_names_the_file(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"nowhere.scene\.json'$"):
+        Scene().save(tmp_path / "nowhere" / "scene.json")
 
 
 numbers = st.floats(-100, 100)
