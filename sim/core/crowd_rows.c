@@ -140,8 +140,8 @@ void rows_measure(Rows *rows, int32_t from, const Mover *mover, double threshold
         const Contact *c = &rows->contact[rows->list[k]];
         Meeting m = meet(&mover[c->a], &mover[c->b]);
         Two v = pair_speed(c, &m), none = {0, 0}, approach;
-        approach[0] = (c->count > 0) & (c->impulse_n[0] == 0) & (v[0] < -threshold) ? v[0] : none[0];
-        approach[1] = (c->count > 1) & (c->impulse_n[1] == 0) & (v[1] < -threshold) ? v[1] : none[1];
+        approach[0] = ((c->count > 0) & (c->impulse_n[0] == 0) & (v[0] < -threshold)) ? v[0] : none[0];
+        approach[1] = ((c->count > 1) & (c->impulse_n[1] == 0) & (v[1] < -threshold)) ? v[1] : none[1];
         rows->bounce[rows->bounce_count] = (Bounce){rows->list[k], approach};
         rows->bounce_count += (approach[0] < 0) | (approach[1] < 0);
     }

@@ -5,6 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "api.h"
+
 /* The first x from `x` on, below `end`, where a row is not 0; `end` where there is none.  Eight pixels are looked at
  * together where all of them may be paper. */
 static inline int32_t next_ink(const uint8_t *row, int32_t x, int32_t end) {
@@ -22,6 +24,6 @@ static inline int32_t next_ink(const uint8_t *row, int32_t x, int32_t end) {
 }
 
 /* See trace_pieces.c. */
-int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, int32_t *pixels, int32_t *start);
+INK_API int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, int32_t *pixels, int32_t *start);
 
 #endif
