@@ -15,6 +15,7 @@ import contextlib
 import os
 import shlex
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -41,13 +42,22 @@ SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 # for the processor's exception flags; without them square roots and choices are taken several at a time.
 FLAGS = ["-O3", "-std=c11", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math"]
 FLAGS += ["-Wall", "-Wextra", "-fvisibility=hidden", "-shared"]
-SANITIZE = [
+SANITIZE = (
     "-O1",
     "-g",
     "-fno-omit-frame-pointer",
     "-fsanitize=address,undefined",
     "-fno-sanitize-recover=undefined",
-]
+)
+
+
+# What a compiler must be able to do: macOS has a `cc` that only offers to install one, a clang of Windows may know no
+# -lm, and an old gcc there may build for another width of pointers than this Python has.
+PROBE = f"""
+#include <math.h>
+_Static_assert(sizeof(void *) == {struct.calcsize("P")}, "the width of this Python's pointers");
+int probe(double x) {{ return isfinite(fmod(x, 2)); }}
+"""
 
 
 def find_compiler() -> list[str] | None:
@@ -56,35 +66,39 @@ def find_compiler() -> list[str] | None:
     for command in wanted:
         if shutil.which(command[0]) is None:
             continue
-        with tempfile.TemporaryDirectory() as folder:  # macOS has a `cc` that only offers to install one
+        with tempfile.TemporaryDirectory() as folder:
             source = Path(folder, "probe.c")
-            source.write_text("#include <math.h>\nint probe(double x) { return isfinite(x); }\n")
-            built = Path(folder, "probe" + SUFFIX)
+            source.write_text(PROBE)
             run = subprocess.run(
-                [*command, "-shared", *position_independent(), str(source), "-o", str(built)],
-                capture_output=True,
+                compilation(command, [str(source)], Path(folder, "probe" + SUFFIX)), capture_output=True
             )
             if run.returncode == 0:
                 return command
     return None
 
 
-def position_independent() -> list[str]:
-    return [] if sys.platform == "win32" else ["-fPIC"]
+def compilation(
+    compiler: list[str], sources: list[str], built: Path, extra: tuple[str, ...] = ()
+) -> list[str]:
+    """The command that compiles the sources into the shared library `built`."""
+    position_independent = [] if sys.platform == "win32" else ["-fPIC"]
+    return [*compiler, *FLAGS, *extra, *position_independent, *sources, "-o", str(built), "-lm"]
 
 
 def compile_library(name: str, built: Path, sanitize: bool = False) -> None:
     """Compile every .c file of the library's folder into the shared library `built`."""
     compiler = find_compiler() or [sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline"]
     sources = sorted(str(path) for path in (ROOT / FOLDERS[name]).glob("*.c"))
-    built.parent.mkdir(parents=True, exist_ok=True)
-    flags = [*FLAGS, *(SANITIZE if sanitize else [])]
-    command = [*compiler, *flags, *position_independent(), *sources, "-o", str(built), "-lm"]
     print("compiling", name, "with", shlex.join(compiler), file=sys.stderr)
-    if subprocess.run(command).returncode != 0:
-        raise SystemExit(
-            f"error: the C library {name} did not compile; the command was: {shlex.join(command)}"
-        )
+    built.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=built.parent) as folder:  # some compilers put more beside it
+        whole = Path(folder, built.name)
+        command = compilation(compiler, sources, whole, SANITIZE if sanitize else ())
+        if subprocess.run(command).returncode != 0:
+            raise SystemExit(
+                f"error: the C library {name} did not compile; the command was: {shlex.join(command)}"
+            )
+        os.replace(whole, built)  # a process may be running the old one
 
 
 def in_place(name: str) -> Path:
@@ -104,10 +118,8 @@ class BuildLibraries(build_ext):
         if built.resolve() == here:
             return
         # A Python that is started in the source folder finds the packages there before those that are installed.
-        with contextlib.suppress(OSError):  # a source folder may be read-only
-            beside = here.with_name(f"{here.name}.{os.getpid()}")
-            shutil.copy2(built, beside)
-            os.replace(beside, here)  # whole: a process may be running the old one
+        with contextlib.suppress(OSError), tempfile.TemporaryDirectory(dir=here.parent) as folder:
+            os.replace(shutil.copy2(built, folder), here)  # unless the source folder is read-only
 
 
 class AnyPythonWheel(bdist_wheel):
