@@ -20,6 +20,8 @@ def entry() -> NoReturn:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:  # whoever started this closed it
             setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
+    with contextlib.suppress(AttributeError):
+        sys.stdout.reconfigure(errors="replace")  # type: ignore[union-attr]  # where there is no ² it is a question mark
     try:
         from cli.main import main
 

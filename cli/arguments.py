@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import re
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
@@ -14,6 +15,7 @@ __all__ = [
     "PrintVersion",
     "UsageError",
     "add_input_options",
+    "matching",
     "number",
     "picture_size",
     "reading",
@@ -133,6 +135,19 @@ def reading(text: str) -> tuple[tuple[int, ...], str]:
     if not equals or re.fullmatch(r"\d+(,\d+)*", strokes) is None:
         raise argparse.ArgumentTypeError(f"{text!r} is not STROKES=KIND, as 3,4=anchor")
     return tuple(int(k) for k in strokes.split(",")), kind.strip()
+
+
+def matching(inputs: Sequence[str]) -> list[str]:
+    """The inputs, the files that match in place of a pattern: the shells of Windows leave ``*.json`` to the program."""
+    found: list[str] = []
+    for source in inputs:
+        names: list[str] = []
+        if re.search(r"[*?[]", source) and not os.path.exists(source):
+            import glob
+
+            names = sorted(glob.glob(source))
+        found += names or [source]
+    return found
 
 
 def add_input_options(p: argparse.ArgumentParser) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
+import re
+import sys
 from collections.abc import Callable, Generator, Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cli.arguments import UsageError, number, whole_number
+from cli.arguments import UsageError, matching, number, whole_number
 from cli.commands.simulate import add_run_options, check_samples
 from cli.results import DATA
 
@@ -68,7 +70,7 @@ def configure(p: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     check_samples(options)
-    tasks = tasks_of(options.inputs)
+    tasks = tasks_of(matching(options.inputs))
     folder = Path(options.folder)
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"-o {folder}: this is not a folder")
@@ -114,7 +116,7 @@ def tasks_of(inputs: list[str]) -> list[Task]:
         lambda task: task.source,
     )
     for name_of in namings:
-        named = [task._replace(name=name_of(task).replace(os.sep, "-")) for task in tasks]
+        named = [task._replace(name=re.sub(r"[/\\:]", "-", name_of(task))) for task in tasks]
         if len({task.name for task in named}) == len(tasks):
             return named
     raise UsageError("an input is given twice")
@@ -192,7 +194,7 @@ def _here(workers: int | None, tasks: list[Task], settings: dict[str, Any]) -> G
         return
     import sketch.recognize  # noqa: F401  (before the fork: every process has them at once)
 
-    method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
+    method = "fork" if sys.platform == "linux" else "spawn"  # macOS forks, but its own libraries break
     with multiprocessing.get_context(method).Pool(workers, _leave_signals) as pool:
         yield from pool.imap(step, tasks, chunksize=max(1, min(8, len(tasks) // (4 * workers))))
 

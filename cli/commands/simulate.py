@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cli.arguments import STDIN, UsageError, add_input_options, number, picture_size, vector
+from cli.arguments import STDIN, UsageError, add_input_options, matching, number, picture_size, vector
 from cli.outputs import Outputs, check_outputs, ending
 from cli.results import ENDINGS, SEEN, Look, Run
 
@@ -106,6 +106,7 @@ def add_run_options(p: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    options.inputs = matching(options.inputs)
     if options.inputs.count(STDIN) > 1:
         raise UsageError("-: standard input is read once, and was named twice")
     targets = [_targets(source, options) for source in options.inputs]

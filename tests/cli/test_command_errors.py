@@ -101,6 +101,19 @@ def test_what_contradicts_is_told_before_standard_input_is_read(
     assert stderr_of(capsys)[0] == line + " [usage]"
 
 
+def test_patterns_that_the_shell_left_name_the_files_that_match(
+    scene_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = scene_file.parent
+    (folder / "other.json").write_bytes(scene_file.read_bytes())
+    argv = ["simulate", str(folder / "*.json"), "-o", str(folder / ".csv"), "--duration", "0.1"]
+    assert main(argv) == 0
+    assert sorted(path.name for path in folder.glob("*.csv")) == ["other.csv", "scene.csv"]
+    nothing = str(folder / "*.jpg")
+    assert main(["simulate", nothing, "-o", "-"]) == 3
+    assert stderr_of(capsys)[-1] == f"error: {nothing}: there is no such file [file]"
+
+
 def test_without_outputs_the_name_of_the_video_is_told(
     scene_file: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
