@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
+from sim.scene import Scene
 from sketch.reading import Reading
 
 if TYPE_CHECKING:
@@ -13,7 +15,6 @@ __all__ = ["explain"]
 
 _MEANING = {
     "anchor": "an anchor, an X: it fixes the body under it",
-    "pivot": "a pivot, a small circle over bodies: they turn about it",
     "gravity": "gravity, along an arrow",
     "unread": "without a meaning: left out",
 }
@@ -31,7 +32,7 @@ def explain(recognition: Recognition) -> str:
             if body.anchored:
                 what += ", anchored"
         else:
-            what = _MEANING.get(reading.kind, reading.kind)
+            what = _MEANING.get(reading.kind) or _pivot(reading, scene)
         lines.append(f"{what}, from {reading.named}")
         lines.append("    " + _why(reading))
     return "\n".join(lines + [f"note: {text}" for text in scene.notes])
@@ -42,8 +43,19 @@ def _shape(reading: Reading) -> str:
     if reading.kind == "polygon":
         return {3: "a triangle", 5: "a pentagon", 6: "a hexagon"}.get(n, f"a polygon of {n} sides")
     if reading.kind == "bar":
-        return f"an open line of {n - 1} {'piece' if n == 2 else 'pieces'}"
+        return "a straight open line" if n == 2 else f"an open line of {n - 1} pieces"
     return f"a {reading.kind}"
+
+
+def _pivot(reading: Reading, scene: Scene) -> str:
+    """What turns about a pivot: the bodies of the joint that stands where it was drawn."""
+    ppm = scene.view.pixels_per_metre if scene.view else 1.0
+    x, y = reading.outline.mean(axis=0) / ppm
+    for joint in scene.joints:
+        if math.dist(joint.position, (x, -y)) * ppm < 1e-6:
+            a, b = joint.bodies
+            return f"a pivot of {a} and {b}" if a and b else f"a pivot that holds {a or b} to the page"
+    return "a pivot, together with another"
 
 
 def _why(reading: Reading) -> str:
@@ -51,13 +63,14 @@ def _why(reading: Reading) -> str:
         return f"because it was said to be: {reading.forced}"
     if reading.kind == "unread":
         return "because no shape says where the ink is in fewer words than the ink itself"
-    text = f"{_percent(reading.score)} sure: says the ink in {reading.gain:.0f} nats less than point by point"
+    rivals = [f"{_rival(kind)} ({_percent(score)})" for kind, score in reading.alternatives if score >= 0.001]
+    text = f"{_percent(reading.score)} sure, " + (
+        f"or else {' or '.join(rivals[:2])}" if rivals else "nothing else comes near"
+    )
     if reading.error:
-        text += f", to within {reading.error:.1f} pixels"
-    rivals = [f"{_rival(kind)} {_percent(score)}" for kind, score in reading.alternatives if score >= 0.001]
-    if not rivals:
-        return text + "; nothing else comes near"
-    return text + f", {reading.margin:.0f} less than the next; else: {', '.join(rivals[:2])}"
+        text += f"; its place is known to {reading.error:.1f} pixels"
+    text += f"; {reading.gain:.0f} nats shorter to say than the bare ink"
+    return text + (f", {reading.margin:.0f} than the next reading" if reading.margin < reading.gain else "")
 
 
 def _rival(kind: str) -> str:

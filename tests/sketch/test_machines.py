@@ -186,7 +186,7 @@ def test_scores_and_alternatives() -> None:
 def test_an_account_names_every_stroke() -> None:
     sketch = pendulum(NEAT, np.random.default_rng(2))
     text = recognize(sketch).explain()
-    for word in ("b1", "b2", "anchored", "pivot", "gravity", "rectangle"):
+    for word in ("b1: ", "b2: ", "anchored", "a pivot of b1 and b2", "gravity", "rectangle"):
         assert word in text
     numbers = {
         int(n) for part in text.split("from stroke")[1:] for n in part.split("\n")[0].strip("s ").split(",")
