@@ -148,9 +148,7 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
         circle.reading.alternatives = sorted([*circle.reading.alternatives, rival], key=lambda t: -t[1])
         if odds < 0.5:
             if len(under) == 1 and odds > UNSURE:
-                notes.append(
-                    _either(circle, f"a ball in front of {_ids(under)}", "a pivot to the background")
-                )
+                notes.append(_either(circle, f"a ball in front of {_ids(under)}", "a pivot to the page"))
             continue
         circle.reading.kind = "pivot"
         circle.reading.score *= odds
@@ -166,7 +164,7 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
         if again:
             continue
         if len(under) == 1 and odds < 1 - UNSURE:
-            notes.append(_either(circle, f"a pivot of {_ids(under)} to the background", "a ball"))
+            notes.append(_either(circle, f"a pivot of {_ids(under)} to the page", "a ball"))
         pair = (under[0].body.id, under[1].body.id if len(under) == 2 else None)
         joints.append(Joint(bodies=pair, position=place))
         places.append((at, radius, under, joints[-1]))
