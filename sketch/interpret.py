@@ -321,10 +321,7 @@ def _gravity(readings: list[Reading], notes: list[str]) -> tuple[float, float]:
 def _doubts(d: Drawn) -> list[str]:
     """What a person should look at: rivals that are nearly as likely, irregular outlines."""
     reading, out = d.reading, []
-    # a rectangle and a polygon of four sides are the same body
-    rivals = [
-        (k, p) for k, p in reading.alternatives if p > UNSURE and k != "pivot" and not _alike(k, reading)
-    ]
+    rivals = [(k, p) for k, p in reading.alternatives if p > UNSURE and k != "pivot"]
     if rivals and reading.forced is None:
         kind, score = rivals[0]
         out.append(f"{d.body.id} ({reading.named}) may also be {_a(kind)} ({score:.0%})")
@@ -336,10 +333,6 @@ def _doubts(d: Drawn) -> list[str]:
     elif reading.kind == "polygon" and len(reading.outline) > 8:
         out.append(f"{d.body.id} ({reading.named}) is an irregular outline: a polygon of many sides")
     return out
-
-
-def _alike(kind: str, reading: Reading) -> bool:
-    return len(reading.outline) == 4 and kind in ("rectangle", "polygon")
 
 
 def _a(kind: str) -> str:

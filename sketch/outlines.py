@@ -112,8 +112,11 @@ def _read(
     evenly, straight = _turning(fit, sides)
     out = _round(fit, fitted, gaps + evenly)
     if math.isfinite(fit.cost[sides]):
-        cost = fit.cost[sides] + said[sides] + gaps + straight
-        out.append(fitted("polygon", cost=cost, outline=fit.vertices(sides), rough=fit.cost[sides]))
+        cost = fit.cost[sides] + said[sides]
+        second = min((k for k in range(3, MOST_SIDES + 1) if k != sides), key=lambda k: fit.cost[k] + said[k])
+        ahead = second, fit.cost[second] + said[second] - cost
+        outline, rough = fit.vertices(sides), fit.cost[sides]
+        out.append(fitted("polygon", cost=cost + gaps + straight, outline=outline, rough=rough, next=ahead))
     if math.isfinite(fit.extra):
         off = fit.residual[4]
         cost = fit.cost[4] + misfit(off + fit.extra, count) - misfit(off, count) + BOX + gaps

@@ -32,7 +32,7 @@ from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page
 from sketch.placing import Placed, placed
 from sketch.proposals import Proposals, Proposed, proposing
-from sketch.reading import Reading, scored
+from sketch.reading import Reading, Rival, scored
 from sketch.sampling import sampled
 from sketch.scoring import Fitted
 from sketch.search import Packing, Part, part
@@ -159,7 +159,7 @@ class Recognizer:
         readings = []
         for c, gain in chosen:
             rivals = _rivals(
-                c, [(proposed[k], told[k]) for k in (*map(leads.__getitem__, c.pieces), *others)]
+                c, gain, [(proposed[k], told[k]) for k in (*map(leads.__getitem__, c.pieces), *others)]
             )
             strokes = tuple(sorted({number[i] for i in c.pieces}))
             readings.append(_reading(c, gain, strokes, rivals, self._places[c]))
@@ -298,26 +298,35 @@ def _same_place(a: Fitted, b: Fitted) -> bool:
     )
 
 
-def _rivals(c: Fitted, proposed: list[tuple[Proposed, list[float]]]) -> dict[str, float]:
-    """What the same ink as a reading's may mean else, and what that gains.
+def _rivals(c: Fitted, gain: float, proposed: list[tuple[Proposed, list[float]]]) -> list[Rival]:
+    """What the same ink as a reading's may mean else: of each meaning the best.
 
     proposed: by its pieces, with the gains.
     """
-    best: dict[str, float] = {"unread": 0.0}
+    own = _meaning(c)
+    best: dict[tuple[str | int, bool], Rival] = {}
+
+    def add(kind: str, meaning: str | int, less: float, alike: bool = False) -> None:
+        there = best.get((meaning, alike))
+        if meaning != own and less < (math.inf if there is None else there.behind):
+            sides = kind == "polygon" and meaning != MANY
+            its = f"polygon of {meaning} sides" if sides else KINDS.get(kind, kind)
+            best[meaning, alike] = Rival(its, less, alike)
+
+    add("unread", "unread", gain)
     for p, gains in proposed:
-        for other, gain in zip(p.candidates, gains, strict=True):
-            if other.pieces == c.pieces and _meaning(other) != _meaning(c):
-                kind = KINDS.get(other.kind, other.kind)
-                best[kind] = max(best.get(kind, -math.inf), gain)
-    return best
+        for other, its in zip(p.candidates, gains, strict=True):
+            if other.pieces == c.pieces:
+                add(other.kind, _meaning(other), gain - its, {c.kind, other.kind} == {"circle", "ellipse"})
+                sides, more = other.next
+                if sides:
+                    add("polygon", min(sides, MANY), gain - its + more)
+    return list(best.values())
 
 
-def _reading(
-    c: Fitted, gain: float, strokes: tuple[int, ...], rivals: dict[str, float], place: Placed
-) -> Reading:
+def _reading(c: Fitted, gain: float, strokes: tuple[int, ...], rivals: list[Rival], place: Placed) -> Reading:
     """A chosen reading, with the others of the same ink as probabilities."""
-    ahead = {name: other - gain for name, other in rivals.items()}
-    score, others = scored(ahead)
+    score, others = scored(rivals)
     return Reading(
         KINDS.get(c.kind, c.kind),
         strokes,
@@ -325,7 +334,7 @@ def _reading(
         place.outline,
         others,
         gain,
-        -max(ahead.values()),
+        min(rival.behind for rival in rivals),
         c.rough,
         place.error,
     )

@@ -47,6 +47,7 @@ class Fitted:
         narrow: of a closed outline: the shorter of its half axes, as it was judged [pixels].
         rough: nats to say the ink, given the outline, of which a clean one takes ten or so.
         gap: of a closed outline: what is missing of it, as a share of its ink.
+        next: of a polygon: the number of sides that comes next, and the nats that it takes more.
         figure: of a cross or an arrow: a closed polygon along all that may be drawn of it [pixels], (n, 2).
     """
 
@@ -58,6 +59,7 @@ class Fitted:
     narrow: float = 0.0
     gap: float = 0.0
     rough: float = 0.0
+    next: tuple[int, float] = (0, math.inf)
     figure: Array | None = None
 
     @property
@@ -73,7 +75,7 @@ class Fitted:
     def together(self, costs: Mapping[int, float]) -> list[Fitted]:
         """The same with further pieces that it explains too, given what each costs: with all, or with one of them."""
         sets = [tuple(costs), *((j,) for j in costs)] if len(costs) > 1 else [tuple(costs)] if costs else []
-        own = self.outline, self.scale, self.narrow, self.gap, self.rough, self.figure
+        own = self.outline, self.scale, self.narrow, self.gap, self.rough, self.next, self.figure
         return [
             Fitted(
                 self.kind, tuple(sorted((*self.pieces, *more))), self.cost + sum(costs[j] for j in more), *own
