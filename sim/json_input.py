@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-__all__ = ["InputError", "convert", "kind_of_value", "parse_json"]
+__all__ = ["InputError", "check_format", "convert", "kind_of_value", "parse_json"]
 
 T = TypeVar("T")
 
@@ -70,6 +70,17 @@ def _not_json(data: bytes | str, cause: Exception) -> InputError:
     return InputError("", f"not JSON: {cause}", kind="format")
 
 
+def check_format(d: dict[str, Any], name: str) -> None:
+    """Raise InputError where an object says that it is of another format or version than `name`, version 1."""
+    found = d.get("format", name)
+    if found != name:
+        raise InputError("format", f"{found!r} is not {name!r}", kind="format")
+    if d.get("version", 1) != 1:
+        raise InputError(
+            "version", f"{d['version']!r} is not 1", "this program reads version 1", kind="format"
+        )
+
+
 def convert(value: Any, to: type[T]) -> T:
     """JSON's objects as a struct, numpy's numbers and arrays too. Raises InputError with the path."""
     try:
@@ -89,8 +100,9 @@ def _with_path(e: msgspec.ValidationError) -> InputError:
     path = path.rstrip("`").removeprefix("$").removeprefix(".")
     if text.startswith("Object missing required field "):
         name = text.split("`")[1]
-        return InputError(f"{path}.{name}" if path else name, "missing")
-    return InputError(path, text[:1].lower() + text[1:].replace("`", ""))
+        path, text = f"{path}.{name}" if path else name, "missing"
+    hint = "a shape is a circle, a rectangle or a polygon" if path.endswith("shape.type") else ""
+    return InputError(path, text[:1].lower() + text[1:].replace("`", ""), hint)
 
 
 def kind_of_value(value: Any) -> str:

@@ -10,9 +10,20 @@ from typing import Any, TypeAlias
 
 import msgspec
 
-from sim.json_input import InputError, convert, kind_of_value, parse_json
+from sim.json_input import InputError, check_format, convert, kind_of_value, parse_json
 
-__all__ = ["Body", "Circle", "InputError", "Joint", "Polygon", "Rectangle", "Scene", "View", "parse_json"]
+__all__ = [
+    "Body",
+    "Circle",
+    "InputError",
+    "Joint",
+    "Polygon",
+    "Rectangle",
+    "Scene",
+    "View",
+    "check_format",
+    "parse_json",
+]
 
 Vector: TypeAlias = tuple[float, float]
 
@@ -161,7 +172,7 @@ class Scene(msgspec.Struct, kw_only=True):
         """Build and check a scene from scene JSON's objects. Raises InputError that names the bad element."""
         if not isinstance(d, dict):
             raise InputError("", f"a scene is a JSON object, not {kind_of_value(d)}")
-        _check_header(d)
+        check_format(d, "sketchsim-scene")
         if "bodies" not in d:
             raise InputError(
                 "bodies", "missing", "a scene has a list of bodies, each with id, shape and position"
@@ -435,16 +446,6 @@ def _check_joint(joint: Joint, ids: dict[str, int], path: str) -> None:
             f"{path}.bodies",
             f"both are {json.dumps(a)}",
             "a joint names two different bodies; null is the background",
-        )
-
-
-def _check_header(d: dict[str, Any]) -> None:
-    found = d.get("format", "sketchsim-scene")
-    if found != "sketchsim-scene":
-        raise InputError("format", f"{found!r} is not 'sketchsim-scene'", kind="format")
-    if d.get("version", 1) != 1:
-        raise InputError(
-            "version", f"{d['version']!r} is not 1", "this program reads version 1", kind="format"
         )
 
 

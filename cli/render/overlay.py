@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 # of an overlay [pixels]; a larger picture is reduced, a smaller one drawn as large as it is
 LONGER_SIDE = 1600
+SURE = 0.95  # probability from which a name stands alone
 BODIES = ("circle", "rectangle", "polygon", "bar")
 ANCHOR, PIVOT, GRAVITY = (rgb(color) for color in ("#b5651d", "#111418", "#0b6e4f"))
 
@@ -81,7 +82,10 @@ def _draw_reading(page: _Page, reading: Reading, color: RGB, strokes: list[Array
 
 
 def _name(reading: Reading) -> str:
-    return reading.kind if reading.kind == "unread" else f"{reading.kind} {reading.score:.0%}"
+    """The kind, and how probable it is where there is a doubt."""
+    if reading.kind == "unread" or reading.score >= SURE:
+        return reading.kind
+    return f"{reading.kind} {reading.score:.0%}"
 
 
 def _label_at(reading: Reading, strokes: list[Stroke]) -> Array:

@@ -85,18 +85,7 @@ def load_sketch(
     Raises InputError, which names the bad element, for what is no sketch; OSError for a file that cannot be
     read.
     """
-    from sketch.formats import strokes
-
-    if isinstance(source, bytes):
-        data = source
-    else:
-        path = Path(source)
-        size = path.stat().st_size
-        if size > MAX_PICTURE_BYTES:  # said before reading: a huge file costs neither time nor memory
-            raise InputError(
-                "", f"{size / 1e6:.0f} MB; at most {MAX_PICTURE_BYTES / 1e6:.0f} MB are taken", kind="size"
-            )
-        data = path.read_bytes()
+    data = source if isinstance(source, bytes) else _contents(Path(source))
     if not data.strip():
         raise InputError("", "the input is empty", kind="empty")
     kind = kind_of(data)
@@ -108,16 +97,30 @@ def load_sketch(
         raise InputError("", f"there is no page {page}: the input has one")
     if stages is not None:
         raise InputError("", "there are no stages of reading strokes", "stages are those of a picture")
-    if kind == "scene":
-        raise InputError(
-            "", "this is a scene, not a sketch", "a scene needs no recognition: simulate it", kind="format"
-        )
     if kind == "quickdraw":
         from sketch.formats import quickdraw
 
         return quickdraw.read(data, index)
     if index:
         raise InputError("", f"there is no drawing {index}: the input has one")
+    return _read(data, kind)
+
+
+def _contents(path: Path) -> bytes:
+    size = path.stat().st_size
+    if size > MAX_PICTURE_BYTES:  # said before reading: a huge file costs neither time nor memory
+        raise InputError(
+            "", f"{size / 1e6:.0f} MB; at most {MAX_PICTURE_BYTES / 1e6:.0f} MB are taken", kind="size"
+        )
+    return path.read_bytes()
+
+
+def _read(data: bytes, kind: str) -> Sketch:
+    """A drawing of a format that keeps one in a file; each reader is loaded when it is needed."""
+    if kind == "strokes":
+        from sketch.formats import strokes
+
+        return strokes.read(data)
     if kind == "excalidraw":
         from sketch.formats import excalidraw
 
@@ -130,11 +133,13 @@ def load_sketch(
         from sketch.formats import inkml
 
         return inkml.read(data)
-    if kind == "unknown":
+    if kind == "scene":
         raise InputError(
-            "line 1 column 1",
-            "not JSON, SVG or InkML, and no picture either",
-            "drawings: JSON, Excalidraw, Quick, Draw!, SVG, InkML; pictures: PNG, JPEG, WebP, TIFF, HEIC, PDF",
-            kind="format",
+            "", "this is a scene, not a sketch", "a scene needs no recognition: simulate it", kind="format"
         )
-    return strokes.read(data)
+    raise InputError(
+        "line 1 column 1",
+        "not JSON, SVG or InkML, and no picture either",
+        "drawings: JSON, Excalidraw, Quick, Draw!, SVG, InkML; pictures: PNG, JPEG, WebP, TIFF, HEIC, PDF",
+        kind="format",
+    )

@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.scene import InputError, parse_json
+from sim.scene import InputError, check_format, parse_json
 from sketch.ink import Sketch, Stroke
 
 __all__ = ["from_objects", "read"]
@@ -43,13 +43,7 @@ def from_objects(d: Any) -> Sketch:
         d = {"strokes": d}
     if not isinstance(d, dict):
         raise InputError("", "a sketch is a JSON object with a list of strokes", _LAYOUT)
-    found = d.get("format", "sketchsim-strokes")
-    if found != "sketchsim-strokes":
-        raise InputError("format", f"{found!r} is not 'sketchsim-strokes'", kind="format")
-    if d.get("version", 1) != 1:
-        raise InputError(
-            "version", f"{d['version']!r} is not 1", "this program reads version 1", kind="format"
-        )
+    check_format(d, "sketchsim-strokes")
     if "strokes" not in d:
         raise InputError("strokes", "missing", 'a sketch is {"strokes": [...]}; ' + _LAYOUT)
     raw = d["strokes"]
