@@ -120,6 +120,10 @@ def simulate(
         RuntimeError: when the run fails (numbers beyond the range of doubles, no memory).
     """
     global _core
+    if not isinstance(scene, Scene):
+        raise TypeError(
+            f"a Scene is run, not a {type(scene).__name__}; Scene.load and Scene.from_dict make one"
+        )
     scene.check()
     samples = _sample_count(duration, fps, len(scene.bodies))
     if tolerance is None:

@@ -1,10 +1,10 @@
-"""Readings that the caller says: some strokes are an anchor, a ball, nothing; the rest is read around
-them."""
+"""Readings that the caller says: some strokes are an anchor, a ball, nothing; the rest is read around them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from operator import index
 
 import numpy as np
 
@@ -36,7 +36,12 @@ def normal_overrides(given: Mapping[int | tuple[int, ...], str] | None, stroke_c
     out: Overrides = {}
     seen: set[int] = set()
     for key, kind in (given or {}).items():
-        strokes = (key,) if isinstance(key, int) else tuple(sorted(set(key)))
+        try:
+            strokes = tuple(sorted({index(s) for s in (key if isinstance(key, tuple) else (key,))}))
+        except TypeError:
+            raise InputError(
+                f"overrides[{key!r}]", "not the number of a stroke", "or several: (3, 4)"
+            ) from None
         name = ",".join(map(str, strokes))
         path = f"overrides[{name}]"
         if kind not in KINDS:

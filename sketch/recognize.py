@@ -95,6 +95,10 @@ class Recognizer:
 
     def __init__(self, sketch: Sketch) -> None:
         """sketch: the canvas, and the ink that is on it already."""
+        if not isinstance(sketch, Sketch):
+            raise TypeError(
+                f"a Sketch is read, not a {type(sketch).__name__}; load_sketch makes one of a file"
+            )
         self._canvas = sketch
         self._proposals = Proposals(math.hypot(sketch.width or 0.0, sketch.height or 0.0))
         self._context = Context()
