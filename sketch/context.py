@@ -22,6 +22,7 @@ Gaps = dict[tuple[Fitted, Fitted], tuple[float, Array]]  # of open lines: how wi
 
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
+AXLE = 0.1  # of the extent of a round body: as near to its middle is an axle
 NO_BODY = 33.0  # nats that an X away from every body is unlikely: it would mean nothing
 ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on,
 LARGER = 2.0  # times as large as the X, at least: else it is a part of an asterisk
@@ -108,7 +109,10 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= WRITTEN
         if c.kind == "cross":
             large = extent > LARGE * size
-            gains[k] += ANCHORS if bodies.around(c, 0.0) else -NO_BODY * (1 + large)
+            if bodies.around(c, 0.0):
+                gains[k] += ANCHORS
+            elif not bodies.reached(c):
+                gains[k] -= NO_BODY * (1 + large)
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
             slips = len(c.pieces) * (extent < TWIG * drawn)  # each stroke of a tiny one is
@@ -116,7 +120,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)
-        elif c.kind == "circle" and bodies.around(c, extent / 2, 3 * extent) > 1:
+        elif c.kind == "circle" and (bodies.around(c, extent / 2, 3 * extent) > 1 or bodies.axle(c, extent)):
             gains[k] += ANCHORS
     return gains
 
@@ -216,6 +220,30 @@ class _Bodies:
             ):
                 count += depth(x, y, body.outline) < reach
         return count
+
+    def reached(self, cross: Fitted) -> bool:
+        """Whether a bar of an X ends in a body of other ink: its middle misses it by a slip of the hand."""
+        low, high = cross.outline.min(axis=0).tolist(), cross.outline.max(axis=0).tolist()
+        return any(
+            x0 < high[0]
+            and y0 < high[1]
+            and x1 > low[0]
+            and y1 > low[1]
+            and extent > math.dist(low, high)
+            and set(cross.pieces).isdisjoint(body.pieces)
+            and any(depth(x, y, body.outline) < 0 for x, y in cross.outline.tolist())
+            for body, (x0, y0, x1, y1, extent) in self.closed
+        )
+
+    def axle(self, c: Fitted, extent: float) -> bool:
+        """Whether a small circle is at the middle of a round body of other ink."""
+        return any(
+            body.kind == "circle"
+            and 2 * extent < wide
+            and math.dist(c.middle, body.middle) < AXLE * wide
+            and set(c.pieces).isdisjoint(body.pieces)
+            for body, (_, _, _, _, wide) in self.closed
+        )
 
     def slip(self, c: Fitted, extent: float) -> bool:
         """Whether an end of c touches the outline of a body of other ink that is twice as large."""

@@ -21,6 +21,7 @@ MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
 MOST_OPEN = 5  # and of those with wide gaps, which are many in a tangle
 WIDE = 0.1  # of a chain's ink
 PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
+REFLEX = 0.06  # likewise for each rad that it turns back; as in core/chains.c
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
 FINE = 8  # steps, at least, in which the way over other ink is looked for, from end to end,
@@ -37,10 +38,10 @@ HEAD_SIZE = 2.0  # and as large as it is
 def closing_chains(page: Page, start: int) -> list[tuple[float, Chain]]:
     """Orders of pieces whose ends meet around, of which `start` is the first drawn, each set of pieces in its
     tightest order, the tightest first: its gaps, as a share of its ink, and the order."""
-    tightest = sorted(page.chains(start), key=lambda t: t[0] / t[1] + PART * len(t[2]))
-    close = sum(gaps <= WIDE * ink for gaps, ink, _ in tightest)
+    tightest = sorted(page.chains(start), key=lambda t: t[0] / t[1] + REFLEX * t[2] + PART * len(t[3]))
+    close = sum(gaps / ink + REFLEX * back <= WIDE for gaps, ink, back, _ in tightest)
     wide = MOST_CHAINS if page.rivals else MOST_OPEN
-    return [(gaps / ink, chain) for gaps, ink, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]
+    return [(gaps / ink, chain) for gaps, ink, _, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]
 
 
 def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:

@@ -22,7 +22,7 @@ REACH = 1.5 * 0.3  # likewise
 UNKNOWN = -1  # neighbours that nobody has asked for yet
 
 _pointer, _int = ctypes.c_void_p, ctypes.c_int32
-_chains = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 8, _int, *[_pointer] * 6)(("ink_chains", library()))
+_chains = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 8, _int, *[_pointer] * 7)(("ink_chains", library()))
 
 
 class LooseEnds:
@@ -50,8 +50,16 @@ class LooseEnds:
             np.empty(MOST_STEPS, dtype=np.int32),
             np.empty(MOST_STEPS + 1, dtype=np.int32),
         )
-        self._gaps, self._ink = np.empty(MOST_STEPS), np.empty(MOST_STEPS)
-        out = (self._links, self._parts, self._gaps, self._ink, self._asked[1:], self._asked)
+        self._gaps, self._ink, self._back = np.empty((3, MOST_STEPS))
+        out = (
+            self._links,
+            self._parts,
+            self._gaps,
+            self._ink,
+            self._back,
+            self._asked[1:],
+            self._asked,
+        )
         self._into = [address(array) for array in out]
         self._of: list[int | None] = []
 
@@ -97,18 +105,14 @@ class LooseEnds:
         self._count[changed] = UNKNOWN
         return set(changed.tolist())
 
-    def chains(self, start: int) -> tuple[list[tuple[float, float, Chain]], set[End]]:
+    def chains(self, start: int) -> tuple[list[tuple[float, float, float, Chain]], set[End]]:
         """Orders of pieces whose ends meet around, of which `start` is the first drawn: each set of pieces in its
-        tightest order, with the lengths of its gaps and of its ink [pixels]; and the ends whose neighbours
-        matter to that."""
+        tightest order, with the lengths of its gaps and of its ink [pixels], and how far it turns
+        back [rad]; and the ends whose neighbours matter to that."""
         count = _chains(len(self.loose), *self._of, start, *self._into)
-        links, gaps, ink = (
-            self._links[:count].tolist(),
-            self._gaps[:count].tolist(),
-            self._ink[:count].tolist(),
-        )
+        out = self._gaps, self._ink, self._back, self._links, self._parts
         found = [
-            (gap, long, [(end // 2, end % 2 == 1) for end in row[:parts]])
-            for gap, long, row, parts in zip(gaps, ink, links, self._parts[:count].tolist(), strict=True)
+            (gap, long, back, [(end // 2, end % 2 == 1) for end in row[:parts]])
+            for gap, long, back, row, parts in zip(*(of[:count].tolist() for of in out), strict=True)
         ]
         return found, set(self._asked[1 : 1 + self._asked[0]].tolist())

@@ -201,7 +201,7 @@ class Page:
         ink = self._boxes, self.strokes.measure, self._points
         return heads(ink, self.ends.rivals, shaft.index, tips, (reach, span, size))
 
-    def chains(self, start: int) -> list[tuple[float, float, Chain]]:
+    def chains(self, start: int) -> list[tuple[float, float, float, Chain]]:
         """As of `LooseEnds.chains`."""
         found, asked = self.ends.chains(start)
         self.looked.ends |= asked

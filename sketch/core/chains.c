@@ -13,14 +13,19 @@ enum {
 };
 
 static const double LOOSE = 0.3; /* gaps of a chain, as a share of its ink, overshoots counted as gaps */
+/* of a chain's ink: how much looser it is as good as for each rad that it turns back */
+static const double REFLEX = 0.06;
+static const double ABOUT = 2.5; /* rad: a turn of more may as well go the other way */
+static const double CURLED = 0.3; /* of a piece's length: with ends no further apart it goes no certain way */
 static const double REACH = 1.5 * 0.3; /* the longest single gap, as a share of the pieces on its two sides */
 
 typedef struct {
     int32_t links
         [MOST_PARTS]; /* ends that the pieces begin with: 2 * piece, or one more where it is gone through backward */
     int32_t names[MOST_PARTS]; /* the pieces, in order */
-    int parts;
+    int parts, from; /* from: the end that the last of them begins with that goes a certain way */
     double gaps, ink; /* lengths [pixels] */
+    double left, right; /* how far it turns either way, from piece to piece [rad] */
 } Chain;
 
 typedef struct {
@@ -70,10 +75,31 @@ static void look_around(Search *s, int end) {
     s->count[end] = n;
 }
 
+/* How loose a way is: what bodies are drawn around mostly turns one way, while sides of several turn there and back. */
+static double looseness(const Chain *way) { return way->gaps / way->ink + REFLEX * fmin(way->left, way->right); }
+
+/* Let a way turn into the piece that begins with an end, over a gap, from the last one that goes a certain way: none that is
+ * curled, or no longer than the gap. */
+static void turn(const Search *s, Chain *way, int to, double gap) {
+    const double *a = s->at + 2 * way->from, *b = s->at + 2 * (way->from ^ 1), *c = s->at + 2 * to,
+                 *d = s->at + 2 * (to ^ 1);
+    double ux = b[0] - a[0], uy = b[1] - a[1], vx = d[0] - c[0], vy = d[1] - c[1];
+    if (hypot(vx, vy) < fmax(gap, CURLED * s->length[to])) return;
+    int curled = hypot(ux, uy) < CURLED * s->length[way->from];
+    way->from = to;
+    double turned = atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+    if (curled || fabs(turned) > ABOUT) return;
+    if (turned > 0)
+        way->left += turned;
+    else
+        way->right -= turned;
+}
+
 /* Keep a way around if it is the tightest of its pieces. */
 static void keep(Search *s, const Chain *way, double gaps) {
     Chain chain = *way;
     chain.gaps = gaps;
+    if (chain.parts > 2) turn(s, &chain, chain.links[0], gaps - way->gaps);
     for (int k = 0; k < way->parts; k++) {
         int at = k, name = way->links[k] / 2;
         for (; at > 0 && chain.names[at - 1] > name; at--) chain.names[at] = chain.names[at - 1];
@@ -110,13 +136,17 @@ static int extend(Search *s, const Chain *way, Chain *longer, int count) {
         int next = s->near[CHOICES * last + c];
         double ink = way->ink + s->length[next], gaps = way->gaps + s->gap[CHOICES * last + c];
         if (gaps > 2 * LOOSE * ink || !may_follow(s, way, next / 2)) continue;
-        if (count == BREADTH && gaps * longer[count - 1].ink >= longer[count - 1].gaps * ink) continue;
+        if (count == BREADTH && gaps / ink >= looseness(longer + count - 1)) continue;
+        Chain more = *way;
+        more.gaps = gaps;
+        more.ink = ink;
+        turn(s, &more, next, gaps - way->gaps);
+        more.links[more.parts++] = next;
+        double loose = looseness(&more);
+        if (count == BREADTH && loose >= looseness(longer + count - 1)) continue;
         int at = count < BREADTH ? count++ : BREADTH - 1;
-        for (; at > 0 && longer[at - 1].gaps * ink > gaps * longer[at - 1].ink; at--) longer[at] = longer[at - 1];
-        longer[at] = *way;
-        longer[at].links[longer[at].parts++] = next;
-        longer[at].gaps = gaps;
-        longer[at].ink = ink;
+        for (; at > 0 && looseness(longer + at - 1) > loose; at--) longer[at] = longer[at - 1];
+        longer[at] = more;
     }
     return count;
 }
@@ -124,12 +154,13 @@ static int extend(Search *s, const Chain *way, Chain *longer, int count) {
 /* Chains that close and of which piece `start` is the first: each set of pieces in its tightest order.
  *
  * rows .. gap: as in Search; from may be null: no two pieces share ink.
- * Out: links (MOST_STEPS, MOST_PARTS), and of each chain parts, gaps [pixels] and ink [pixels]; ends: those whose neighbours
+ * Out: links (MOST_STEPS, MOST_PARTS), and of each chain parts, gaps [pixels], ink [pixels] and how far it turns
+ * back [rad]; ends: those whose neighbours
  * were asked for, MOST_STEPS at most, asked: how many. Returns the number of chains. */
 INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length, const uint8_t *loose,
                            const int32_t *rivals, const int32_t *from, int32_t *count, int32_t *near, double *gap,
-                           int32_t start, int32_t *links, int32_t *parts, double *gaps, double *ink, int32_t *ends,
-                           int32_t *asked) {
+                           int32_t start, int32_t *links, int32_t *parts, double *gaps, double *ink, double *back,
+                           int32_t *ends, int32_t *asked) {
     Search s;
     s.rows = rows;
     s.at = at;
@@ -143,7 +174,7 @@ INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length,
     s.found = s.asked = 0;
     s.ends = ends;
     /* Of few parts first: what two pieces make is seen however many others lie about. */
-    Chain ways[2][BREADTH] = {{{.links = {2 * start}, .parts = 1, .ink = length[2 * start]}}};
+    Chain ways[2][BREADTH] = {{{.links = {2 * start}, .parts = 1, .from = 2 * start, .ink = length[2 * start]}}};
     for (int parts = 1, count = 1; count > 0; parts++) {
         const Chain *now = ways[(parts + 1) % 2];
         Chain *longer = ways[parts % 2];
@@ -156,6 +187,7 @@ INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length,
         parts[c] = s.best[c].parts;
         gaps[c] = s.best[c].gaps;
         ink[c] = s.best[c].ink;
+        back[c] = fmin(s.best[c].left, s.best[c].right);
     }
     *asked = s.asked;
     return s.found;

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from pages import box, kinds, read
 
 from sketch.synthetic import HANDS, circle, cross, line, outline
 
+Array = NDArray[np.float64]
 NEAT, PIECES = HANDS["neat"], HANDS["pieces"]
 seeds = pytest.mark.parametrize("seed", range(4))
 
@@ -99,3 +103,49 @@ def test_a_wheel_that_its_frame_cuts_turns_on_it(seed: int) -> None:
     assert [j.bodies for j in cut.joints] == [("b1", "b2")]
     free = read(frame, circle((300, 408), 50, NEAT, rng), circle((300, 408), 5, NEAT, rng)).scene
     assert [j.bodies for j in free.joints] == [("b2", None)]
+
+
+def rod(a: tuple[float, float], b: tuple[float, float], rng: np.random.Generator) -> list[list[Array]]:
+    """A rod 40 thick in five strokes, of which each is up to 18 too long or too short at either end."""
+    (x, y), (u, v) = a, (np.array(b) - a) / np.hypot(*np.subtract(b, a))
+    long = math.dist(a, b)
+    corners = [(-20.0, 20.0), (0.6 * long, 20.0), (long + 20, 20.0), (long + 20, -20.0), (-20.0, -20.0)]
+    strokes = []
+    for p, q in pairwise([*corners, corners[0]]):
+        way = np.subtract(q, p) / math.dist(p, q)
+        aside = rng.uniform(-2, 2) * np.array([-way[1], way[0]])
+        ends = [np.add(e, rng.uniform(-18, 18) * way) + aside for e in (p, q)]
+        strokes.append(line([(x + u * s - v * t, y + v * s + u * t) for s, t in ends], NEAT, rng))
+    return strokes
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_rods_that_meet_end_to_end_are_each_their_own(seed: int) -> None:
+    """The long sides of two go around as well, there and back, with smaller gaps."""
+    rng = np.random.default_rng(seed)
+    joints = [(300.0, 560.0), (340.0, 320.0), (800.0, 240.0), (860.0, 560.0)]
+    rods = [stroke for a, b in pairwise(joints) for stroke in rod(a, b, rng)]
+    found = read(*rods, *(circle(at, 9, NEAT, rng) for at in joints[1:3]))
+    assert kinds(found) == ["4-gon"] * 3 + ["pivot"] * 2
+
+
+@seeds
+def test_a_clumsy_x_that_slips_off_its_body_anchors_it(seed: int) -> None:
+    """Drawn in one stroke, with its middle below the hill, and with a bar that begins in it."""
+    rng = np.random.default_rng(seed)
+    hill = outline([(400, 600), (800, 600), (600, 400)], NEAT, rng)
+    mark = [(-30, -20), (-2, 4), (30, 36), (18, -34), (0, 10), (-26, 32)]
+    for below, anchored in ((8.0, True), (60.0, False)):
+        found = read(hill, line([(600 + x, 600 + below + y) for x, y in mark], NEAT, rng))
+        assert [b.anchored for b in found.scene.bodies] == [anchored]
+        assert ("anchor" in kinds(found)) == anchored
+
+
+@seeds
+def test_a_hasty_ring_at_the_middle_of_a_wheel_is_its_axle(seed: int) -> None:
+    """The pen went on into the ring, nearly as it would in an X drawn in one stroke."""
+    rng = np.random.default_rng(seed)
+    wheel = circle((400, 300), 90, NEAT, rng)
+    ring = [(-4, 5), (6, 5), (12, -1), (9, -8), (2, -10), (-6, -5), (-6, 1), (-1, 6), (8, 7)]
+    found = read(wheel, line([(400 + x, 300 + y) for x, y in ring], NEAT, rng))
+    assert kinds(found) == ["circle", "pivot"]

@@ -62,7 +62,7 @@ def test_chains_are_those_of_all_orders(seed: int) -> None:
         loose.loosen(piece)
     for start in range(count):
         chains, _ = loose.chains(start)
-        found = {tuple(sorted(i for i, _ in chain)): gap for gap, _, chain in chains}
+        found = {tuple(sorted(i for i, _ in chain)): gap for gap, _, _, chain in chains}
         assert found == pytest.approx(closings(ends, length, start, rivals))
 
 
