@@ -26,8 +26,6 @@ AXLE = 0.1  # of the extent of a round body: as near to its middle is an axle
 NO_BODY = 33.0  # nats that an X away from every body is unlikely: it would mean nothing
 ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on,
 LARGER = 2.0  # times as large as the X, at least: else it is a part of an asterisk
-# nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two
-ONE_ARROW = 15.0
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.4  # of a bar's extent: as near as the strokes of a letter are
@@ -77,12 +75,6 @@ class Context:
         self._known = dict(zip(proposed, told, strict=True))
         self._bodies, self._sizes = bodies, (size, drawn)
         out = list(told)
-        first = _first_arrow(proposed, told, likely)
-        for n, p in enumerate(proposed):
-            if first and p.arrows:
-                out[n] = own = list(told[n])
-                for k in p.arrows:
-                    own[k] += -ONE_ARROW if first.isdisjoint(p.candidates[k].pieces) else ONE_ARROW
         for n, k in _letters(proposed, likely, LETTER * size, self._gaps):
             out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
             own[k] -= TOUCHING
@@ -123,19 +115,6 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
         elif c.kind == "circle" and (bodies.around(c, extent / 2, 3 * extent) > 1 or bodies.axle(c, extent)):
             gains[k] += ANCHORS
     return gains
-
-
-def _first_arrow(proposed: list[Proposed], told: list[list[float]], likely: list[Pick]) -> set[int]:
-    """The pieces of the likeliest arrow: of those that are likely, or else on ink that is nothing likelier."""
-    arrows = [(p, k) for p, k in likely if proposed[p].candidates[k].kind == "arrow"]
-    if not arrows:
-        taken = _taken(proposed, likely, "bar")
-        every = ((n, k) for n, p in enumerate(proposed) for k in p.arrows)
-        arrows = [(n, k) for n, k in every if taken.isdisjoint(proposed[n].candidates[k].pieces)]
-    if not arrows:
-        return set()
-    n, k = max(arrows, key=lambda pick: told[pick[0]][pick[1]])
-    return set(proposed[n].candidates[k].pieces)
 
 
 def _taken(proposed: list[Proposed], likely: list[Pick], *but: str) -> set[int]:

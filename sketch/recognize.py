@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import InputError, Scene
+from sketch.arrows import pointing
 from sketch.context import Context, Pick
 from sketch.cutting import things_in
 from sketch.explain import explain
@@ -190,7 +191,8 @@ class Recognizer:
         likely: list[Pick] = self._alone.best([p.alone for p in proposed])
         page = self._proposals.page
         told = self._context.told(proposed, likely, page.size, page.drawn)
-        told = written(page, proposed, told, likely)
+        told, elsewhere = pointing(page, proposed, told, likely)
+        told = written(page, proposed, told, likely, elsewhere)
         known, self._parts = self._parts, {}
         for p, gains in zip(proposed, told, strict=True):
             there = known.get(p)

@@ -23,25 +23,26 @@ Pick = tuple[int, int]  # what was proposed by which piece, and which of it
 # nats that another thing in a row is likelier a letter, for each stroke there that means nothing
 WRITTEN = 60.0
 LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
-TALL = 2.2  # times that a thing in a word is as large as the largest stroke there, at most
+TALL = 2.5  # times that a thing in a word is as large as another: a capital as a small letter
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
-MEASURE = 30.0  # nats that a line with a mark at either end is no rod
+MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
 MARK = 0.25  # of its length: as large as those are,
 AT_END = 0.05  # and as near to its ends,
 ON = 0.02  # while others that are nearer to it mean something else: hatching, a floor
 
 
 def written(
-    page: Page, proposed: list[Proposed], told: list[list[float]], likely: list[Pick]
+    page: Page, proposed: list[Proposed], told: list[list[float]], likely: list[Pick], pointing: set[int]
 ) -> list[list[float]]:
     """Gains, less what rings, crosses and bars lose by what is written there.
 
-    told: the gains of all that is proposed.  likely: which of it the ink makes likely.
+    told: the gains of all that is proposed.  likely: which of it the ink makes likely.  pointing: the pieces of arrows
+    that are no gravity.
     """
     chosen = [(proposed[p].candidates[k], told[p][k], proposed[p].rows[k]) for p, k in likely]
     # an X loses by its surroundings where no body is
     crosses = {c for (c, gain, _), (p, k) in zip(chosen, likely, strict=True) if gain < proposed[p].gains[k]}
-    idle = page.pieces.keys() - {
+    idle = pointing | page.pieces.keys() - {
         i
         for c, *_ in chosen
         if c.kind != "bar" and not (c.kind == "cross" and c in crosses)
@@ -64,7 +65,9 @@ def written(
         idle |= lost
     lone = [page.pieces[i] for i in sorted(idle)]
     lines = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
-    measured = {i for bar in lines if idle.issuperset(bar.pieces) for i in _measured(page, bar, lone)}
+    measured = {
+        i for bar in lines if idle.issuperset(bar.pieces) for i in _measured(page, bar, lone)
+    } | pointing
     touched = rows.of.keys() | measured
     out = list(told)
     for n, p in enumerate(proposed):

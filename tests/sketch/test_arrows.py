@@ -1,0 +1,94 @@
+"""Arrows beside the one that is gravity: of a coordinate cross, at a moving body, of a dimension line."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pages import box, read
+
+from sketch.recognize import Recognition
+from sketch.synthetic import HANDS, arrow, circle, line, outline
+
+Array = np.ndarray
+HAND = HANDS["neat"]
+SEEDS = range(4)
+
+
+def scenery(rng: np.random.Generator) -> list[Array]:
+    """A floor, a ball and a box: bodies b1, b2 and b3."""
+    floor, load = (outline(v, HAND, rng) for v in (box(640, 600, 900, 60), box(840, 510, 200, 110)))
+    return [*floor, *circle((450, 520), 45, HAND, rng), *load]
+
+
+def is_down(recognition: Recognition) -> bool:
+    return recognition.scene.gravity[1] < -9.5
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("size", [60, 140])
+def test_a_coordinate_cross_is_no_gravity(seed: int, size: float) -> None:
+    rng = np.random.default_rng(seed)
+    bodies, gravity = scenery(rng), arrow((1180, 120), (1183, 230), HAND, rng)
+    axes = [
+        *arrow((150, 300), (150 + size, 302), HAND, rng),
+        *arrow((152, 300), (150, 300 - size), HAND, rng),
+    ]
+    seen = read(bodies, axes, gravity)
+    assert len(seen.scene.bodies) == 3
+    assert is_down(seen)
+    alone = read(bodies, axes).scene
+    assert (len(alone.bodies), tuple(alone.gravity)) == (3, (0.0, 0.0))
+    notes = " ".join(alone.notes)
+    first = len(bodies)
+    assert all(str(k) in notes for k in range(first, first + len(axes)))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("gap", [0, 10])
+def test_an_arrow_that_begins_at_a_body_is_no_gravity(seed: int, gap: float) -> None:
+    rng = np.random.default_rng(seed)
+    bodies, gravity = scenery(rng), arrow((1180, 120), (1183, 230), HAND, rng)
+    moving = arrow((450 - 45 - gap, 520), (320 - gap, 518), HAND, rng)
+    seen = read(bodies, gravity, moving)
+    assert len(seen.scene.bodies) == 3
+    assert is_down(seen)
+    assert tuple(read(bodies, moving).scene.gravity) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_of_two_arrows_the_one_on_free_paper_is_gravity(seed: int) -> None:
+    """However many strokes either is drawn in, and whichever came first; and the other is named."""
+    rng = np.random.default_rng(seed)
+    bodies, gravity = scenery(rng), arrow((1180, 120), (1183, 230), HAND, rng)
+    pushing = arrow((560, 430), (705, 480), HAND, rng)  # at the box, from the left
+    for strokes in ((gravity, pushing), (pushing, gravity)):
+        seen = read(bodies, *strokes)
+        assert is_down(seen)
+        assert any("2 arrows" in note for note in seen.scene.notes)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_line_with_two_heads_is_no_gravity(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    bodies = scenery(rng)
+    (shaft,) = line([(740, 440), (940, 440)], HAND, rng)
+    heads = [
+        line([(x + inward, 440 + up), (x, 440)], HAND, rng)
+        for x, inward in ((740, 14), (940, -14))
+        for up in (-8, 8)
+    ]
+    scene = read(bodies, [shaft], *heads).scene
+    assert (len(scene.bodies), tuple(scene.gravity)) == (3, (0.0, 0.0))
+    seen = read(bodies, [shaft], *heads, arrow((1180, 120), (1183, 230), HAND, rng))
+    assert len(seen.scene.bodies) == 3
+    assert is_down(seen)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_an_arrow_beside_a_wall_is_gravity(seed: int) -> None:
+    """It runs along the wall and does not begin at it: alone on its page it means what arrows mean."""
+    rng = np.random.default_rng(seed)
+    wall = outline(box(400, 360, 50, 500), HAND, rng)
+    seen = read(wall, arrow((450, 200), (452, 320), HAND, rng))
+    assert is_down(seen)
+    assert len(seen.scene.bodies) == 1
