@@ -54,7 +54,7 @@ def _pivot(reading: Reading, scene: Scene) -> str:
     for joint in scene.joints:
         if math.dist(joint.position, (x, -y)) * ppm < 1e-6:
             a, b = joint.bodies
-            return f"a pivot of {a} and {b}" if a and b else f"a pivot that holds {a or b} to the page"
+            return f"a pivot of {a} and {b}" if b else f"a pivot that holds {a} to the page"
     return "a pivot, together with another"
 
 

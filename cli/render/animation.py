@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 __all__ = ["PLAIN", "Extras", "Sheet", "Trails", "changes", "clock", "drawn", "frame_count"]
 
 CHUNK = 64  # frames whose poses are computed at once: memory does not grow with the length
-VELOCITY, FORCE = (68, 119, 170), (214, 40, 57)
 
 Array = NDArray[np.float64]
 
@@ -206,7 +205,7 @@ def _draw_vectors(figure: Figure, canvas: Canvas, motion: Trajectory, k: int, at
     for body, (middle, v, a) in enumerate(zip(middles, motion.velocities[k], accelerations, strict=True)):
         if scene.bodies[body].anchored:
             continue
-        for vector, one, color in ((v, 1.0, VELOCITY), (a, g, FORCE)):
+        for vector, one, color in ((v, 1.0, pen.style.velocity), (a, g, pen.style.force)):
             amount = math.hypot(*vector) / one
             if amount > 1e-3:
                 along = vector * np.array([1, -1]) / math.hypot(*vector)

@@ -71,6 +71,8 @@ def _data(figure: Figure, motion: Trajectory, ink: Ink, extras: Extras) -> dict[
         "paper": _css(style.paper),
         "dark": _css(style.ink),
         "drawn": _css(style.drawn),
+        "velocityPaint": _css(style.velocity),
+        "forcePaint": _css(style.force),
         "bodies": [_body(figure, k) for k in range(len(scene.bodies))],
         "pivots": [_pivot(figure, joint) for joint in scene.joints],
         "grid": _grid(figure),

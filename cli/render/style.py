@@ -24,6 +24,7 @@ class Style:
         paper: the background.  ink: text, scale bar, gravity, pivots.
         drawn: the person's strokes, lying under the bodies.
         signal: what needs attention.
+        velocity, force: of the arrows that show them.
         edge: of outlines, mixed with the body's colour.
         pale, anchored_pale: share of paper in the filling of a body that moves, and of one that does not.
         line: width of outlines in a picture 720 pixels high [pixels].
@@ -35,6 +36,8 @@ class Style:
     ink: RGB = (45, 48, 56)
     drawn: RGB = (206, 210, 218)
     signal: RGB = (214, 40, 57)
+    velocity: RGB = (68, 119, 170)
+    force: RGB = (214, 40, 57)
     edge: RGB = (45, 48, 56)
     pale: float = 0.12
     anchored_pale: float = 0.72
@@ -49,6 +52,8 @@ BLUEPRINT = Style(
     paper=(24, 58, 112),
     ink=(236, 242, 250),
     drawn=(52, 88, 144),
+    velocity=(140, 200, 255),
+    force=(255, 110, 110),
     edge=(255, 255, 255),
     pale=0.72,
     anchored_pale=0.86,

@@ -191,10 +191,10 @@ class Stage {
     recording.bodies.forEach((body, k) => {
       if (body.anchored) return;
       const [x, y, , vx, vy] = recording.at(k, player.time);
-      this.arrow(x, y, vx, vy, 60 * this.unit, "#4477aa"); // at most so long
+      this.arrow(x, y, vx, vy, 60 * this.unit, this.recording.velocityPaint); // at most so long
       const [fx, fy] = recording.force(k, player.time);
       const weight = body.mass * (Math.hypot(...recording.gravity) || 1);
-      this.arrow(x, y, fx / weight, fy / weight, 45 * this.unit, "#d62839");
+      this.arrow(x, y, fx / weight, fy / weight, 45 * this.unit, this.recording.forcePaint);
     });
   }
 
