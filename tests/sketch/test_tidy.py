@@ -10,7 +10,7 @@ from pages import box, ngon, page, pendulum
 
 from sim.scene import Scene
 from sketch import recognize
-from sketch.synthetic import HANDS, arrow, circle, cross, line, outline
+from sketch.synthetic import HANDS, arrow, circle, cross, ellipse, line, outline
 
 NEAT = HANDS["neat"]
 PPM = 128.0
@@ -98,3 +98,12 @@ def test_the_error_of_a_fit_is_that_of_its_corners() -> None:
         said.append(reading.error)
         off.append(math.dist(reading.outline.mean(axis=0), (400, 300)))
     assert 0.5 < math.sqrt(np.mean(np.square(off))) / math.sqrt(np.mean(np.square(said))) < 2
+
+
+def test_an_outline_without_sides_stays_as_it_was_drawn() -> None:
+    """Of its many short sides some are near level wherever it goes."""
+    rng = np.random.default_rng(3)
+    shapes = [ellipse((500, 300), (170, 80), 0.0, NEAT, rng)]
+    (drawn,), (tidied,) = (recognize(page(*shapes), tidy=tidy).scene.bodies for tidy in (False, True))
+    assert len(drawn.outline()) > 8
+    assert tidied == drawn

@@ -1,0 +1,50 @@
+"""Shapes that the pen was lifted in, and what looks like them: two things in line."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pages import box, page
+
+from sketch import recognize
+from sketch.synthetic import HANDS, cross, line
+
+NEAT = HANDS["neat"]
+
+
+def cut_at(share: float, corners: list[tuple[float, float]]) -> list[list[tuple[float, float]]]:
+    """A closed outline in two paths: the first goes so far around, the second the rest."""
+    ring = np.array([*corners, corners[0]])
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ring, axis=0).T))])
+    at = share * along[-1]
+    here = tuple(float(np.interp(at, along, ring[:, k])) for k in (0, 1))
+    before, after = ring[along < at], ring[along > at]
+    return [[*map(tuple, before.tolist()), here], [here, *map(tuple, after.tolist())]]  # type: ignore[list-item]
+
+
+@pytest.mark.parametrize("share", [0.6, 0.8, 0.87, 0.93])
+@pytest.mark.parametrize("size", [(300, 200), (400, 90)])
+def test_the_last_of_an_outline_in_a_stroke_of_its_own_belongs_to_it(
+    size: tuple[float, float], share: float
+) -> None:
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        strokes = [line(path, NEAT, rng) for path in cut_at(share, box(500, 300, *size))]
+        (reading,) = recognize(page(*strokes)).readings
+        assert (reading.kind, reading.strokes) == ("rectangle", (0, 1))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.8, 1.57])
+def test_two_floors_in_line_with_a_hole_between_them_are_two(turn: float) -> None:
+    c, s = np.cos(turn), np.sin(turn)
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+
+        def at(x: float) -> tuple[float, float]:
+            return (400 + c * x, 300 + s * x)
+
+        floors = [line([at(a), at(b)], NEAT, rng) for a, b in ((-220, -20), (20, 220))]
+        marks = [cross(at(x), 30, NEAT, rng) for x in (-120, 120)]
+        bodies = recognize(page(*floors, *marks)).scene.bodies
+        assert len(bodies) == 2
+        assert all(body.anchored for body in bodies)
