@@ -289,14 +289,17 @@ def test_a_wavy_line_by_itself_is_left_out() -> None:
     assert "left out" in found.scene.notes[-1]
 
 
-def test_what_joins_the_bars_of_an_x_may_go_any_way() -> None:
-    """Down one bar, on in a hook and a bow to the head of the other, and down that: in one stroke."""
-    hook = [(38, 33), (47, 37), (44, 33), (35, 24), (31, 14), (32, 3)]
-    course = np.array([(0, 0), (12, 14), (24, 28), *hook, (38, -15), (28, 0), (14, 21), (0, 40)], float)
+HOOKED = [(0, 0), (12, 14), (24, 28), (38, 33), (47, 37), (44, 33), (35, 24), (31, 14), (32, 3), (38, -15)]
+INWARDS = [(0, 9), (8, 17), (23, 33), (36, 34), (37, 37), (27, 31), (24, 22), (26, 12), (31, -1), (25, 9)]
+
+
+@pytest.mark.parametrize("course", [[*HOOKED, (28, 0), (14, 21), (0, 40)], [*INWARDS, (13, 25), (0, 40)]])
+def test_what_joins_the_bars_of_an_x_may_go_any_way(course: list[tuple[float, float]]) -> None:
+    """Down one bar, on in a hook or a bow to the head of the other, and down that: in one stroke."""
     for seed in range(12):
         rng = np.random.default_rng(seed)
         body = outline(box(400, 300, 460, 240), HANDS["neat"], rng)
-        mark = line((1.5 * (course - [20, 12]) + [400, 300]).tolist(), HANDS["neat"], rng)
+        mark = line((1.5 * (np.array(course) - [20, 12]) + [400, 300]).tolist(), HANDS["neat"], rng)
         assert kinds(read(body, mark)) == ["4-gon", "anchor"]
 
 
