@@ -94,10 +94,9 @@ def build_graph(chains: Chains, distance: NDArray[Any], pen: float) -> Graph:
     at = np.round(chains.nodes).astype(int)
     graph = Graph(chains.nodes, distance[at[:, 1], at[:, 0]].astype(np.float64))
     for points, ends in zip(chains.chains, chains.ends, strict=True):
-        head = [chains.nodes[ends[0]]] if ends[0] >= 0 else []
-        tail = [chains.nodes[ends[1]]] if ends[1] >= 0 else []
-        closed = [points[0]] if ends == RING else []
-        graph.edges.append(Edge(np.array([*head, *points, *tail, *closed]), ends))
+        head, tail = (chains.nodes[end : end + 1] if end >= 0 else points[:0] for end in ends)
+        closed = points[:1] if ends == RING else points[:0]
+        graph.edges.append(Edge(np.concatenate([head, points, tail, closed]), ends))
     _drop_twigs(graph)
     _drop_overshoots(graph, pen)
     _turn_hairpins(graph, distance, pen)

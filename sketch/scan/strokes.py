@@ -13,7 +13,7 @@ from sketch.scan.courses import Course, Links
 from sketch.scan.graph import RING, End, Graph
 from sketch.scan.junctions import LONELY, Branch, Junction, Pairs, turn_cost
 
-__all__ = ["Layout"]
+__all__ = ["CRUMB", "Layout"]
 
 Points = NDArray[np.float64]
 

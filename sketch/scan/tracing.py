@@ -18,6 +18,7 @@ from sketch.scan.graph import Graph, build_graph
 from sketch.scan.hidden import going_on
 from sketch.scan.overlaps import overlapping
 from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
+from sketch.scan.prices import lines
 from sketch.scan.quantiles import percentile
 from sketch.scan.ridge import centre_on_ink
 from sketch.scan.rings import find_rings, take_rings
@@ -157,9 +158,9 @@ def _strokes(seen: Traced) -> list[Points]:
     sharpen_corners(graph, distance, pen)
     drawn = Graph(graph.nodes, graph.radius, list(graph.edges))
     found, names = find_rings(mask, distance, pen), count()
-    plain, rings = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
+    plain, certain = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
     whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen, names)
-    rings += doubtful
+    rings = certain + doubtful
     ways = Ways(graph, pen)
     first = ways.likeliest() + rings
     likeliest = [_drawn(way, seen) for way in first]
@@ -182,11 +183,11 @@ def _strokes(seen: Traced) -> list[Points]:
     others += [_drawn(way, seen) for way in crossed(drawn, first, distance, pen)]
     if others or overlaps:
         height, width = mask.shape
-        chosen = settle(
-            likeliest, others, overlaps, pen * seen.scale, width * seen.scale, height * seen.scale
-        )
+        ends = lines(likeliest + others + overlaps, pen * seen.scale)
+        canvas = width * seen.scale, height * seen.scale
+        chosen = settle(likeliest, others, overlaps, ends, pen * seen.scale, canvas)
         used = frozenset(name for way in chosen for name in way.ink)
-        left = [ring for ring in rings if used.isdisjoint(ring.ink)]
+        left = [ring for ring in certain if (used & ends.keys()).isdisjoint(ring.ink)]
         likeliest = chosen + [_drawn(way, seen) for way in ways.likeliest(without=used) + left]
     return [way.points for way in likeliest if len(way.points) > 1]
 
