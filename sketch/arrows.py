@@ -6,14 +6,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sketch.kernel import depth
-from sketch.pieces import Page
-from sketch.proposals import Proposed
+from sketch.pieces import Page, Piece
+from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
 
 __all__ = ["Pick", "pointing"]
 
+Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
 
 # nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two
@@ -44,8 +46,9 @@ def pointing(
     every = [(n, k) for n, p in enumerate(proposed) for k in p.arrows if told[n][k] > -ONE_ARROW]
     if not every:
         return told, set()
-    arrows = _Arrows(page, proposed, likely)
-    losses = {(n, k): arrows.loss(proposed[n].candidates[k]) for n, k in every}
+    arrows = [proposed[n].candidates[k] for n, k in every]
+    chosen = [(proposed[n].candidates[k], proposed[n].rows[k]) for n, k in likely]
+    losses = dict(zip(every, _losses(page, arrows, chosen), strict=True))
     first = _first(proposed, told, likely, losses)
     its: set[int] = set() if first is None else set(proposed[first[0]].candidates[first[1]].pieces)
     most = math.inf if first is None else told[first[0]][first[1]] - losses[first] + ONE_ARROW
@@ -88,71 +91,66 @@ def _first(
     return max(arrows, key=gain, default=None)
 
 
-class _Arrows:
-    """What stands around arrows, to be asked of each whether it means something else than gravity."""
+def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) -> list[float]:
+    """Nats that each of some arrows is rarer as gravity than by its ink; infinite if it means something else.
 
-    def __init__(self, page: Page, proposed: list[Proposed], likely: list[Pick]) -> None:
-        self._page = page
-        chosen = [(proposed[n].candidates[k], proposed[n].rows[k]) for n, k in likely]
-        self._bodies = [c for c, _ in chosen if c.closed]
-        self._boxes = np.array([row[:4] for c, row in chosen if c.closed]).reshape(-1, 4)
-        self._arrows = [c for c, _ in chosen if c.kind == "arrow"]
-        taken = {i for c in self._bodies for i in c.pieces}
-        self._idle = [p for i, p in page.pieces.items() if i not in taken]
+    likely: what the ink makes likely, with where it lies, as of `Proposed`.
+    """
+    ends = np.array([arrow.outline for arrow in arrows])
+    longs = np.maximum(np.hypot(*(ends[:, 1] - ends[:, 0]).T), 1e-9)
+    bodies = [c for c, _ in likely if c.closed]
+    boxes = np.array([row[:4] for c, row in likely if c.closed]).reshape(-1, 4)
+    reach = NEAR * longs[:, None]
+    low, high = ends.min(axis=1) - reach, ends.max(axis=1) + reach
+    near = ((boxes[:, :2] < high[:, None]) & (boxes[:, 2:] > low[:, None])).all(axis=2)
+    taken = {i for body in bodies for i in body.pieces}
+    idle = [p for i, p in page.pieces.items() if i not in taken]
+    elsewhere = _axes(arrows, ends, longs, [c for c, _ in likely if c.kind == "arrow"])
+    elsewhere |= _two_headed(page, arrows, ends, longs, idle)
+    out = []
+    for k, arrow in enumerate(arrows):
+        its = (bodies[b] for b in np.flatnonzero(near[k]).tolist())
+        apart = [body for body in its if set(arrow.pieces).isdisjoint(body.pieces)]
+        out.append(math.inf if k in elsewhere else _beside(ends[k], float(longs[k]), apart))
+    return out
 
-    def loss(self, arrow: Fitted) -> float:
-        """Nats that an arrow is rarer as gravity than by its ink; infinite if it means something else."""
-        tail, tip = arrow.outline
-        long = max(math.dist(tail, tip), 1e-9)
-        bodies = self._near(arrow, NEAR * long)
-        if self._is_axis(arrow, long) or self._has_two_heads(arrow, long):
+
+def _beside(ends: Array, long: float, bodies: list[Fitted]) -> float:
+    """Nats that an arrow of some length is rarer for the bodies beside it; infinite if it begins at one."""
+    tail, tip = ends
+    along = NEAR * long
+    for body in bodies:
+        first, *others = (depth(x, y, body.outline) for x, y in (tail + t * (tip - tail) for t in PLACES))
+        if first < AT_BODY * long and others[-1] - first > AWAY * long:
             return math.inf
-        along = NEAR * long
-        for body in bodies:
-            first, *others = (depth(x, y, body.outline) for x, y in (tail + t * (tip - tail) for t in PLACES))
-            if first < AT_BODY * long and others[-1] - first > AWAY * long:
-                return math.inf
-            along = min(along, first, *others)
-        return BESIDE * (1 - max(along, 0.0) / (NEAR * long))
+        along = min(along, first, *others)
+    return BESIDE * (1 - max(along, 0.0) / (NEAR * long))
 
-    def _near(self, arrow: Fitted, reach: float) -> list[Fitted]:
-        """The bodies of other ink that may be within `reach` of an arrow [pixels]."""
-        low, high = arrow.outline.min(axis=0) - reach, arrow.outline.max(axis=0) + reach
-        near = ((self._boxes[:, :2] < high) & (self._boxes[:, 2:] > low)).all(axis=1)
-        bodies = (self._bodies[b] for b in np.flatnonzero(near).tolist())
-        return [body for body in bodies if set(arrow.pieces).isdisjoint(body.pieces)]
 
-    def _is_axis(self, arrow: Fitted, long: float) -> bool:
-        """Whether another arrow begins where it does, at a right angle."""
-        tail, way = arrow.outline[0], arrow.outline[1] - arrow.outline[0]
-        for other in self._arrows:
-            its, wide = other.outline[1] - other.outline[0], math.dist(*other.outline)
-            if (
-                set(arrow.pieces).isdisjoint(other.pieces)
-                and max(long, wide) < ALIKE * min(long, wide)
-                and math.dist(tail, other.outline[0]) < SAME_TAIL * min(long, wide)
-                and abs(way @ its) < UPRIGHT * long * wide
-            ):
-                return True
-        return False
+def _axes(arrows: list[Fitted], ends: Array, longs: Array, likely: list[Fitted]) -> set[int]:
+    """Which arrows begin where another does that is likely, at a right angle to it."""
+    others = np.array([arrow.outline for arrow in likely]).reshape(-1, 2, 2)
+    ways, its = ends[:, 1] - ends[:, 0], others[:, 1] - others[:, 0]
+    wide, long = np.hypot(*its.T), longs[:, None]
+    least = np.minimum(wide, long)
+    pair = np.hypot(*(ends[:, None, 0] - others[:, 0]).transpose(2, 0, 1)) < SAME_TAIL * least
+    pair &= (np.abs(ways @ its.T) < UPRIGHT * wide * long) & (np.maximum(wide, long) < ALIKE * least)
+    return {k for k, j in np.argwhere(pair).tolist() if set(arrows[k].pieces).isdisjoint(likely[j].pieces)}
 
-    def _has_two_heads(self, arrow: Fitted, long: float) -> bool:
-        """Whether there is ink at its tail, on both sides, that means nothing else."""
-        (x, y), (ux, uy) = arrow.outline[0], (arrow.outline[1] - arrow.outline[0]) / long
-        sides = []
-        for p in self._idle:
-            x0, y0, x1, y1 = p.box
-            r = AT_TAIL * long
-            if (
-                p.extent > MARK * long
-                or p.index in arrow.pieces
-                or not (x0 - r < x < x1 + r and y0 - r < y < y1 + r)
-            ):
-                continue
-            off = self._page.strokes.samples[p.stroke] - (x, y)
-            if np.hypot(*off.T).min() < r:
-                sides.append(off @ (-uy, ux))
-        if not sides:
-            return False
-        across = np.concatenate(sides)
-        return bool(across.min() < -SIDES * long and across.max() > SIDES * long)
+
+def _two_headed(page: Page, arrows: list[Fitted], ends: Array, longs: Array, idle: list[Piece]) -> set[int]:
+    """At the tails of which arrows there is ink, on both sides, that means nothing else."""
+    boxes = np.array([p.box for p in idle]).reshape(-1, 4)
+    tails, reach = ends[:, 0], AT_TAIL * longs
+    low, high = (tails - reach[:, None])[:, None], (tails + reach[:, None])[:, None]
+    sides: dict[int, list[float]] = {}
+    for k, j in np.argwhere(((boxes[:, :2] < high) & (boxes[:, 2:] > low)).all(axis=2)).tolist():
+        p, long = idle[j], float(longs[k])
+        if p.extent > MARK * long or p.index in arrows[k].pieces:
+            continue
+        off = page.strokes.samples[p.stroke] - tails[k]
+        if np.hypot(*off.T).min() < reach[k]:
+            ux, uy = (ends[k, 1] - tails[k]) / long
+            across = off @ (-uy, ux)
+            sides.setdefault(k, []).extend((float(across.min()) / long, float(across.max()) / long))
+    return {k for k, off in sides.items() if min(off) < -SIDES and max(off) > SIDES}

@@ -24,6 +24,13 @@ Pick = tuple[int, int]  # what was proposed by which piece, and which of it
 WRITTEN = 60.0
 LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
 TALL = 2.5  # times that a thing in a word is as large as another: a capital as a small letter
+WITHIN = 2 * WRITTEN  # likewise of what is drawn over a body, which else is a mark on it
+MARKED = (
+    1.7  # times that it is as large as a letter there, at most: marks are larger than what is written at them
+)
+NEXT = 0.5  # of the larger stroke: between a letter and the next
+CLEAR = 0.15  # of a body's narrower half: as far from its outline as what is written in it is, at least
+RADIUS = 0.35  # of a ring's extent
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
 MARK = 0.25  # of its length: as large as those are,
@@ -48,16 +55,16 @@ def written(
         if c.kind != "bar" and not (c.kind == "cross" and c in crosses)
         for i in c.pieces
     }
-    if not idle:
-        return told
     marks = _Marks(page, [(c, row) for c, _, row in chosen], LARGEST * page.drawn)
+    letters = marks.in_bodies()
+    idle |= letters
     near = _near(page, marks.largest)
     while True:
         rows = _Rows(page, near, idle)
         lost = {
             i
             for c, gain, row in chosen
-            if not rows.of.keys().isdisjoint(c.pieces) and gain < marks.loss(rows, c, row[4])
+            if not rows.of.keys().isdisjoint(c.pieces) and gain < marks.loss(rows, c, row)
             for i in c.pieces
         }
         if lost <= idle:
@@ -68,7 +75,7 @@ def written(
     measured = {
         i for bar in lines if idle.issuperset(bar.pieces) for i in _measured(page, bar, lone)
     } | pointing
-    touched = rows.of.keys() | measured
+    touched = rows.of.keys() | measured | letters
     out = list(told)
     for n, p in enumerate(proposed):
         if touched.isdisjoint(p.alone.pieces):
@@ -76,8 +83,9 @@ def written(
         own = out[n] = list(told[n])
         for k, (c, row) in enumerate(zip(p.candidates, p.rows, strict=True)):
             if own[k] > 0 and not touched.isdisjoint(c.pieces):
-                own[k] -= marks.loss(rows, c, row[4])
+                own[k] -= marks.loss(rows, c, row)
                 own[k] -= MEASURE * (c.kind == "bar" and not measured.isdisjoint(c.pieces))
+                own[k] -= WITHIN * (c.closed and not letters.isdisjoint(c.pieces))
     return out
 
 
@@ -95,48 +103,95 @@ class _Marks:
         self._bodies = [c for c, _ in likely if c.closed]
         where = np.array([row for c, row in likely if c.closed]).reshape(-1, 5)
         self._boxes, self._extents = where[:, :4], where[:, 4]
-        self._known: dict[Fitted, bool] = {}
+        self._known: dict[Fitted, list[Fitted]] = {}
+        self._held: dict[tuple[int, Fitted], bool] = {}
 
-    def loss(self, rows: _Rows, c: Fitted, extent: float) -> float:
-        """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in."""
+    def in_bodies(self) -> set[int]:
+        """The pieces of small outlines, of anything but a ring, within bodies: letters, as no body is there."""
+        small = [k for k in np.flatnonzero(self._extents < self.largest) if self._bodies[k].kind != "circle"]
+        low, high = self._boxes[small, None, :2], self._boxes[small, None, 2:]
+        held = ((low > self._boxes[:, :2]) & (high < self._boxes[:, 2:])).all(axis=2)
+        found = set[int]()
+        for k, b in np.argwhere(held).tolist():
+            c, body = self._bodies[small[k]], self._bodies[b]
+            apart = (
+                set(c.pieces).isdisjoint(body.pieces) and self._extents[b] > OVER * self._extents[small[k]]
+            )
+            if apart and all(depth(x, y, body.outline) < 0 for x, y in c.outline.tolist()):
+                found.update(c.pieces)
+        return found
+
+    def loss(self, rows: _Rows, c: Fitted, where: Row) -> float:
+        """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in.
+
+        A pivot of two bodies is no letter. What else is drawn over a body is one if they are within that body too, and
+        next to it.
+        """
+        extent = where[4]
         if extent >= self.largest or c.kind == "arrow":
             return 0.0
         beside = rows.beside(c.pieces, extent)
-        if not beside:
+        if beside and c.closed:  # what is written in a body does not make a letter of it
+            beside -= sum(self._holds(c, i) for i in rows.idle(c.pieces, extent) if self._is_in(where, i))
+        if not beside or c.kind not in ("circle", "cross"):
+            return WRITTEN * beside
+        under = self._under(c, extent)
+        if not under:
+            return WRITTEN * beside
+        if c.kind == "circle" and len(under) > 1:
             return 0.0
-        if c not in self._known:
-            self._known[c] = self._may_be_written(c, extent)
-        return WRITTEN * beside if self._known[c] else 0.0
-
-    def _may_be_written(self, c: Fitted, extent: float) -> bool:
-        """Whether it is no X on a body, and no pivot: of two bodies, or the only one of its body."""
-        if c.kind not in ("circle", "cross") or not (under := self._under(c, extent)):
-            return True
-        return c.kind == "circle" and len(under) == 1 and self._is_pinned_again(under[0], c)
+        within = [
+            i
+            for i in rows.idle(c.pieces, extent)
+            if extent < MARKED * self._page.pieces[i].extent and any(self._holds(b, i) for b in under)
+        ]
+        if within and c.kind == "circle" and self._is_pinned_again(under[0], c):
+            return WITHIN * len(within)
+        return WITHIN * sum(self._is_next(c, i) for i in within)
 
     def _is_pinned_again(self, body: Fitted, c: Fitted) -> bool:
-        """Whether another small ring than c lies over a body and no other."""
-        low, high = body.outline.min(axis=0), body.outline.max(axis=0)
-        middles = (self._boxes[:, :2] + self._boxes[:, 2:]) / 2
-        near = (self._extents < self.largest) & ((middles > low) & (middles < high)).all(axis=1)
-        rings = (self._bodies[k] for k in np.flatnonzero(near).tolist())
+        """Whether another small ring than c lies over a body and no other: eyes, and no nails."""
         return any(
-            ring.kind == "circle" and ring.pieces != c.pieces and self._under(ring, _extent(ring)) == [body]
-            for ring in rings
+            ring.kind == "circle" and ring.pieces != c.pieces and self._under(ring, float(extent)) == [body]
+            for ring, extent in zip(self._bodies, self._extents, strict=True)
+            if extent < self.largest
         )
 
+    def _is_next(self, c: Fitted, i: int) -> bool:
+        """Whether a stroke is as near to a reading's ink as that of the same letter, or of the next."""
+        samples = self._page.strokes.samples
+        large = max(self._page.pieces[j].extent for j in (i, *c.pieces))
+        other = samples[self._page.pieces[i].stroke, None, ::2]
+        inks = (samples[self._page.pieces[j].stroke, ::2, None] for j in c.pieces)
+        return any(float(np.hypot(*(ink - other).transpose(2, 0, 1)).min()) < NEXT * large for ink in inks)
+
+    def _is_in(self, where: Row, i: int) -> bool:
+        """Whether the middle of a stroke is in a box."""
+        (x0, y0, x1, y1), (a, b, c, d, _) = self._page.pieces[i].box, where
+        return a < (x0 + x1) / 2 < c and b < (y0 + y1) / 2 < d
+
+    def _holds(self, body: Fitted, i: int) -> bool:
+        """Whether a stroke is within a body, clear of its outline: not a spoke."""
+        if (i, body) not in self._held:
+            p, clear = self._page.pieces[i], -CLEAR * body.narrow
+            within = depth((p.box[0] + p.box[2]) / 2, (p.box[1] + p.box[3]) / 2, body.outline) < 0
+            points = self._page.strokes.samples[p.stroke, ::4].tolist() if within else []
+            self._held[i, body] = within and all(depth(x, y, body.outline) < clear for x, y in points)
+        return self._held[i, body]
+
     def _under(self, c: Fitted, extent: float) -> list[Fitted]:
-        """The bodies of other ink, that are larger, that its middle is over."""
-        at = np.array(c.middle)
-        near = (self._boxes[:, :2] < at).all(axis=1) & (self._boxes[:, 2:] > at).all(axis=1)
-        near &= self._extents > OVER * extent
-        bodies = (self._bodies[k] for k in np.flatnonzero(near).tolist())
-        return [b for b in bodies if set(c.pieces).isdisjoint(b.pieces) and depth(*c.middle, b.outline) < 0]
-
-
-def _extent(c: Fitted) -> float:
-    """The diagonal of a reading's bounding box [pixels]."""
-    return math.dist(c.outline.min(axis=0), c.outline.max(axis=0))
+        """The bodies of other ink, that are larger, that its middle is over; or that a ring is over."""
+        if c not in self._known:
+            at, reach = np.array(c.middle), RADIUS * extent * (c.kind == "circle")
+            near = ((self._boxes[:, :2] - reach < at) & (self._boxes[:, 2:] + reach > at)).all(axis=1)
+            near &= self._extents > OVER * extent
+            bodies = (self._bodies[k] for k in np.flatnonzero(near).tolist())
+            self._known[c] = [
+                b
+                for b in bodies
+                if set(c.pieces).isdisjoint(b.pieces) and depth(*c.middle, b.outline) < reach
+            ]
+        return self._known[c]
 
 
 def _near(page: Page, largest: float) -> dict[int, list[int]]:
@@ -149,30 +204,40 @@ def _near(page: Page, largest: float) -> dict[int, list[int]]:
 
 
 class _Rows:
-    """The rows in which small strokes stand, near one another, with some that mean nothing: these are idle."""
+    """The rows in which small strokes stand, near one another, with some that mean nothing: these are idle.
+
+    Attributes:
+        of: by stroke, the idle ones in its row: TALL times their extents, in order, and which they are.
+    """
 
     def __init__(self, page: Page, near: dict[int, list[int]], idle: Set[int]) -> None:
         """near: of each small stroke the others that may be in one word with it."""
-        self.of: dict[
-            int, list[float]
-        ] = {}  # by stroke: TALL times the extents of the idle ones in its row, in order
+        self.of: dict[int, tuple[list[float], list[int]]] = {}
         self._idle = {i: TALL * page.pieces[i].extent for i in near.keys() & idle}
         for start in self._idle:
             if start in self.of:
                 continue
-            tall = self.of[start] = []
+            its = self.of[start] = [], []
             row = [start]
             for i in row:  # it grows meanwhile
                 new = [j for j in near[i] if j not in self.of]
-                self.of.update((j, tall) for j in new)
+                self.of.update((j, its) for j in new)
                 row += new
-            tall += sorted(self._idle[i] for i in row if i in self._idle)
+            for tall, i in sorted((self._idle[i], i) for i in row if i in self._idle):
+                its[0].append(tall)
+                its[1].append(i)
 
     def beside(self, pieces: Sequence[int], extent: float) -> int:
         """How many idle strokes, large enough for one of some extent [pixels], some strokes stand in a row with."""
-        its = {id(row): row for i in pieces if (row := self.of.get(i))}
+        rows = {id(row): row for i in pieces if (row := self.of.get(i))}
         own = sum(extent < self._idle[i] for i in pieces if i in self._idle)
-        return sum(len(row) - bisect_right(row, extent) for row in its.values()) - own
+        return sum(len(tall) - bisect_right(tall, extent) for tall, _ in rows.values()) - own
+
+    def idle(self, pieces: Sequence[int], extent: float) -> list[int]:
+        """Those strokes."""
+        rows = {id(row): row for i in pieces if (row := self.of.get(i))}
+        large = (i for tall, its in rows.values() for i in its[bisect_right(tall, extent) :])
+        return [i for i in large if i not in pieces]
 
 
 def _boxes_near(p: Piece, q: Piece, reach: float) -> bool:

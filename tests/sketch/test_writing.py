@@ -12,7 +12,7 @@ from test_machines import cart, meaning
 from sim.scene import Circle
 from sketch.ink import Sketch, Stroke
 from sketch.recognize import recognize
-from sketch.synthetic import HANDS, arrow, circle, line, outline
+from sketch.synthetic import HANDS, arrow, circle, cross, line, outline
 
 Array = np.ndarray
 Path = list[tuple[float, float]]
@@ -28,10 +28,17 @@ def arc(x: float, y: float, a: float, b: float, first: float, last: float) -> Pa
 LETTERS: dict[str, list[Path]] = {
     "0": [arc(0.3, 0.5, 0.22, 0.5, -90, -450)],
     "1": [[(0.1, 0.2), (0.3, 0), (0.3, 1)]],
+    "A": [[(0.02, 1), (0.3, 0), (0.58, 1)], [(0.13, 0.62), (0.48, 0.62)]],
+    "D": [[(0.08, 0), (0.08, 1)], [(0.08, 0), *arc(0.12, 0.5, 0.45, 0.5, -90, 90), (0.08, 1)]],
     "N": [[(0.05, 1), (0.05, 0), (0.5, 1), (0.5, 0)]],
     "a": [arc(0.25, 0.75, 0.2, 0.25, -30, -390), [(0.45, 0.5), (0.47, 1)]],
     "e": [[(0.08, 0.75), (0.5, 0.75), *arc(0.3, 0.75, 0.2, 0.25, 0, -310)]],
+    "g": [
+        arc(0.25, 0.72, 0.2, 0.24, -30, -390),
+        [(0.45, 0.5), (0.45, 1.15), *arc(0.27, 1.15, 0.18, 0.2, 0, 150)],
+    ],
     "h": [[(0.1, 0), (0.1, 1)], [(0.1, 0.7), *arc(0.28, 0.72, 0.17, 0.22, -180, 0), (0.45, 1)]],
+    "k": [[(0.1, 0), (0.1, 1)], [(0.45, 0.5), (0.1, 0.78), (0.48, 1)]],
     "l": [[(0.25, 0), (0.25, 1)]],
     "m": [[(0.0, 0.5), (0.0, 1)], [(0.0, 0.66), *arc(0.3, 0.66, 0.13, 0.16, -180, 0), (0.43, 1)]],
     "o": [arc(0.28, 0.75, 0.2, 0.25, -90, -455)],
@@ -68,6 +75,48 @@ def test_a_word_beside_a_machine_is_no_body(text: str, height: float, angle: flo
     assert all(max(b.strokes) < first for b in seen.scene.bodies)
     notes = " ".join(seen.scene.notes)
     assert all(str(k) in notes for k in range(first, len(beside)))
+
+
+@pytest.mark.parametrize("text", ["a", "g", "D", "k", "A", "ma", "10", "kg"])
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_written_in_a_body_is_no_mark_on_it(text: str, seed: int) -> None:
+    """No anchor, no pivot, no body; and the marks that are there stay."""
+    rng = np.random.default_rng(seed)
+    frame, load = (outline(v, HAND, rng) for v in (box(400, 300, 240, 90), box(900, 600, 260, 110)))
+    words = [*word(text, 370, 285, 30, rng), *word(text, 940, 585, 30, rng)]
+    nail, anchor = circle((310, 300), 8, HAND, rng), cross((830, 600), 48, HAND, rng)
+    plain = read(frame, load, words).scene
+    assert (len(plain.bodies), plain.joints, [b.anchored for b in plain.bodies]) == (2, [], [False, False])
+    scene = read(frame, load, nail, anchor, words).scene
+    assert [b.anchored for b in scene.bodies] == [False, True]
+    assert [j.bodies for j in scene.joints] == [("b1", None)]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_small_ball_with_its_name_is_a_ball(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    floor = outline(box(640, 500, 900, 60), HAND, rng)
+    for name in (word("m", 536, 412, 20, rng), word("m", 490, 405, 20, rng)):  # beside it, and in it
+        scene = read(floor, circle((500, 420), 24, HAND, rng), name).scene
+        assert [isinstance(b.shape, Circle) for b in scene.bodies] == [False, True]
+
+
+def test_spokes_leave_a_hub_a_pivot() -> None:
+    rng = np.random.default_rng(4)
+    frame, wheel = outline(box(500, 350, 300, 60), HAND, rng), circle((500, 400), 55, HAND, rng)
+    spokes = [
+        line(
+            [
+                (500 + 11 * math.cos(a), 400 + 11 * math.sin(a)),
+                (500 + 54 * math.cos(a), 400 + 54 * math.sin(a)),
+            ],
+            HAND,
+            rng,
+        )
+        for a in np.arange(5) * 2 * math.pi / 5
+    ]
+    scene = read(frame, wheel, circle((500, 400), 8, HAND, rng), *spokes).scene
+    assert (len(scene.bodies), len(scene.joints)) == (2, 1)
 
 
 @pytest.mark.parametrize("radius", [12, 30])
