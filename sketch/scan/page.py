@@ -14,6 +14,7 @@ from sketch.scan.ruling import FEWEST, drop_ruling
 from sketch.scan.table import TABLE, closed, darkest_channel, find_sheet
 
 __all__ = [
+    "FILL",
     "Page",
     "drop_specks",
     "fill_grain",
@@ -49,6 +50,7 @@ BESIDE = 0.6  # of a line's darkness: beside it the paper is brighter
 SMUDGE = 0.5  # likewise, for small pieces: a dirty finger leaves those
 RULED = 0.3  # of the picture's height or width: pieces of ruling are longer
 SQUARED = 0.7  # likewise, of height and width
+ACROSS = 0.85  # of the sheet's height or width: what leads from edge to edge has more, though at a slant
 NOTABLE = 0.03  # of the picture's size: pieces smaller than this do not say how dark the ink is
 
 
@@ -232,7 +234,7 @@ def ink_mask(page: Page, reach: int) -> Image:
     # is; but from a line darkness falls to both sides, and along an edge to one
     link(crests(dark, mask, max(floor, FAINT * full), reach, CREST, BESIDE), LEAST_LINK, mask)
     found = _measure(mask, page)
-    if _may_be_ruled(found, mask.shape) and drop_ruling(mask, dark):
+    if _may_be_ruled(found, page) and drop_ruling(mask, dark, page.edge):
         found = _measure(mask, page)
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     held = found.at_edge & (found.span < FINGER_MARK * size)
@@ -241,11 +243,17 @@ def ink_mask(page: Page, reach: int) -> Image:
     return found.without(mask, ~keep)
 
 
-def _may_be_ruled(found: _Pieces, shape: tuple[int, ...]) -> bool:
-    """Whether there are many pieces nearly as long as the sheet, as of ruling, or one all over it, as of squares."""
-    size = np.array(shape)
+def _may_be_ruled(found: _Pieces, page: Page) -> bool:
+    """Whether many pieces are nearly as long as the sheet, as of ruling, or one leads from edge to edge or all over
+    it, as of squares."""
+    size = np.array(page.darkness.shape)
     long, all_over = found.extent >= RULED * size, found.extent >= SQUARED * size
-    return bool(long.sum(axis=0).max(initial=0) >= FEWEST or all_over.all(axis=1).any())
+    if long.sum(axis=0).max(initial=0) >= FEWEST or all_over.all(axis=1).any():
+        return True
+    sheet = size
+    if page.edge is not None:
+        sheet = np.array([np.count_nonzero((page.edge[::4, ::4] == 0).any(axis=k)) * 4 for k in (1, 0)])
+    return bool((found.extent >= ACROSS * sheet).any())
 
 
 def drop_specks(mask: Image, distance: NDArray[Any], pen: float) -> int:

@@ -25,35 +25,80 @@ FEWEST = 5  # printed lines of which such a stretch is seen
 EVEN = 0.12  # of their distance: how far they are from even spacing
 SEEN = 0.35  # of a line's length that has to be ink, where it is only thought to be
 WHOLE = 0.8  # of the picture's width: a line seen so far is seen whole
+EDGED = 0.99  # of the sheet's width: what a line has to reach at both ends to run from edge to edge
+STRAIGHT = 0.3  # [pixels] that a printed line is off a smooth one,
+TREMOR = 25  # [pixels] over as many, in which a hand's is more
 DARKER = 1.5  # than the printed line: ink on it
 
 
-def drop_ruling(mask: Image, darkness: Image) -> bool:
-    """Erase ruling and squares from a mask of ink, in place; returns whether there were any.
+def drop_ruling(mask: Image, darkness: Image, edge: Image | None) -> bool:
+    """Erase ruling, squares and margins from a mask of ink, in place; returns whether there were any.
 
-    Ink that crosses a printed line stays, and so does ink on it that is clearly darker.
+    Ink that crosses a printed line stays, and so does ink on it that is clearly darker.  edge: not 0 off the sheet and
+    near its edge, or None where the sheet fills the picture.
     """
-    across = _drop_family(mask, darkness)
+    across = _drop_printed(mask, darkness, edge)
     upright, dark = np.ascontiguousarray(mask.T), np.ascontiguousarray(darkness.T)
-    if _drop_family(upright, dark):
+    if _drop_printed(upright, dark, None if edge is None else edge.T):
         mask[...] = upright.T
         return True
     return across
 
 
-def _drop_family(mask: Image, darkness: Image) -> bool:
-    """Erase what is ruled from left to right."""
+def _drop_printed(mask: Image, darkness: Image, edge: Image | None) -> bool:
+    """Erase what is printed from left to right."""
     lines, thick = _long_lines(mask)
-    if len(lines) < FEWEST:
-        return False
+    ruled = len(lines) >= FEWEST and _drop_family(lines, thick, mask, darkness)
+    single = [
+        line
+        for rough in lines
+        if (line := _refined(rough, mask, thick)) is not None and _is_across(line, mask, edge, thick)
+    ]
+    for line in single:
+        _erase([_belt(line, mask, darkness, thick)], mask)
+    return ruled or bool(single)
+
+
+def _drop_family(lines: list[Line], thick: float, mask: Image, darkness: Image) -> bool:
+    """Erase the ruling that some long lines belong to."""
     family = [_refined(line, mask, thick) for line in _family(lines, mask.shape)]
     belts = [_belt(line, mask, darkness, thick) for line in family if line is not None]
+    _erase(belts, mask)
+    return len(belts) >= FEWEST
+
+
+def _erase(belts: list[_Belt], mask: Image) -> None:
+    """Erase lines that are printed alike."""
     levels = [median(belt.dark[belt.alone]) for belt in belts if belt.alone.any()]
     # all are printed alike: a line that is drawn along one of them, however far, is darker than the others
     for belt in belts:
         printed = ~belt.crossed & (belt.dark <= DARKER * median(levels)) if levels else ~belt.crossed
         mask[belt.rows[:, printed], np.broadcast_to(belt.x, belt.rows.shape)[:, printed]] = 0
-    return len(belts) >= FEWEST
+
+
+def _is_across(line: Line, mask: Image, edge: Image | None, thick: float) -> bool:
+    """Whether a line runs straight from one edge of the sheet to the other, as no hand draws it."""
+    height, width = mask.shape
+    reach = round(thick) + 1
+    x = np.arange(width)
+    middle = np.round(np.polyval(line, x)).astype(int)
+    inside = (middle >= reach) & (middle < height - reach)
+    x, middle = x[inside], middle[inside]
+    if edge is not None:
+        x, middle = x[edge[middle, x] == 0], middle[edge[middle, x] == 0]
+    rows = middle + np.arange(-reach, reach + 1)[:, None]
+    ink = mask[rows, x] > 0
+    count = ink.sum(axis=0)
+    seen = np.flatnonzero(count)
+    alone = (count > 0) & (count <= thick + 1.5)
+    rim = (1 - EDGED) * len(x)
+    if len(seen) < WHOLE * len(x) or len(x) < LONG * width or alone.sum() < LONG * width:
+        return False
+    if seen[0] > rim or seen[-1] < len(x) - 1 - rim:
+        return False
+    off = (rows * ink).sum(axis=0)[alone] / count[alone] - np.polyval(line, x[alone])
+    smooth = np.convolve(off, np.full(TREMOR, 1 / TREMOR), "valid")
+    return float(np.std(smooth)) < STRAIGHT
 
 
 def _long_lines(mask: Image) -> tuple[list[Line], float]:
