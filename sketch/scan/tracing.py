@@ -13,11 +13,12 @@ from sketch.scan.binding import distances, thin, trace
 from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.crossed import crossed
 from sketch.scan.faces import standing
+from sketch.scan.faint import drop_faint_marks
 from sketch.scan.grain import smoothed_grain
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.hidden import going_on
 from sketch.scan.overlaps import overlapping
-from sketch.scan.page import Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
+from sketch.scan.page import FILL, Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
 from sketch.scan.prices import lines
 from sketch.scan.quantiles import percentile
 from sketch.scan.ridge import centre_on_ink
@@ -59,6 +60,7 @@ class Traced:
             paper.  All None where the picture is too small to show anything.
         pen: width of the pen [pixels of the stages' pictures].
         specks: how many pieces were too small to be anything.
+        faint: how many marks were fainter than anything drawn.
         problem: why nothing was read, if there was something.
     """
 
@@ -70,6 +72,7 @@ class Traced:
     distance: NDArray[Any] | None = None
     pen: float = 0.0
     specks: int = 0
+    faint: int = 0
     problem: str = ""
 
 
@@ -125,12 +128,18 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
 
 
 def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any]) -> float:
-    """The width of the pen: the ink's area over its length, unless filled shapes are among it."""
-    thickness = 2 * distance[skeleton > 0]
-    thin_ink, thick_ink = percentile(thickness, 20), percentile(thickness, 80)
-    if thick_ink > 2.5 * thin_ink:
-        return float(min(thin_ink, WIDEST_PEN))
-    pen = float(np.count_nonzero(mask)) / len(thickness)
+    """The width of the pen: the ink's area over its length, without what is filled."""
+    import cv2
+
+    thickness = distance[skeleton > 0]
+    core = 2 * FILL * percentile(thickness, 20)
+    pen = cv2.countNonZero(mask) / len(thickness)
+    if (thick := float(thickness.max())) > core:
+        side = 2 * round(2 * core) + 1  # also into its corners
+        unfilled = cv2.dilate((distance > core).view(np.uint8), np.ones((side, side), np.uint8)) == 0
+        area, length = (int(np.count_nonzero(unfilled & (some > 0))) for some in (mask, skeleton))
+        without = area / length if length else WIDEST_PEN
+        pen = without if thick > FILL * without else pen  # a blot is not filled
     return pen if pen < FILLED * mask.size**0.5 else WIDEST_PEN
 
 
@@ -150,6 +159,12 @@ def _strokes(seen: Traced) -> list[Points]:
         size = cv2.countNonZero(skeleton)
     seen.skeleton, seen.distance = skeleton, distance
     chains = trace(skeleton, size)
+    seen.faint = drop_faint_marks(mask, page.darkness, chains, distance, pen)
+    if seen.faint:
+        seen.distance = distance = distances(mask)
+        drop_specks(mask, distance, pen)
+        seen.skeleton, size = thin(mask)
+        chains = trace(seen.skeleton, size)
     if len(chains.chains) > MOST_LINES:
         seen.problem = f"nothing was read: {len(chains.chains)} lines are too many for a drawing"
         return []

@@ -124,6 +124,70 @@ def test_filled_shapes_are_their_outlines() -> None:
     assert assert_ring_and_box(sketch, 5.0) == []
 
 
+def test_filled_shapes_among_lines_are_their_outlines() -> None:
+    """The pen is as wide as its lines are, however much of the ink is filled."""
+    some = ink()
+    for x in range(60, 660, 60):
+        corners = np.array([(x, 430), (x + 34, 430), (x + 34, 520), (x, 520)])
+        cv2.fillPoly(some, [corners], 1.0)
+    strokes = [s.points for s in read_picture(encoded(drawn(some, noise=3))).strokes]
+    boxes = [s for s in strokes if s[:, 1].min() > 415]
+    assert len(boxes) == 10
+    for k, box in enumerate(sorted(boxes, key=lambda s: float(s[:, 0].min()))):
+        # the pen's middle went half its width within the edge of what it filled
+        assert np.abs(box.min(axis=0) - (60 + 60 * k + 1.5, 431.5)).max() < 1.5
+        assert np.abs(box.max(axis=0) - (60 + 60 * k + 32.5, 518.5)).max() < 1.5
+
+
+def other_side(strength: float) -> np.ndarray:
+    behind = cv2.GaussianBlur(ink()[:, ::-1], (0, 0), 2.0)[..., None]
+    return np.asarray(235 * (1 - strength * behind))
+
+
+def stained() -> np.ndarray:
+    """The ring that a cup left, darker where more of the coffee dried."""
+    off = np.hypot(ACROSS * WIDTH - 330, DOWN * HEIGHT - 330)
+    ring = np.exp(-(((off - 170) / 4) ** 2)) * (0.7 + 0.3 * ACROSS)
+    return np.asarray(240 * (1 - ring[..., None] * np.array([0.45, 0.3, 0.2])))
+
+
+def creased() -> np.ndarray:
+    off = ACROSS * WIDTH - 280 - 20 * DOWN
+    return np.asarray(240 * (1 - 0.25 * np.exp(-((off / 2.5) ** 2)) - 0.1 * (off > 0))[..., None])
+
+
+FAINT_MARKS = {
+    "the other side under pencil": (other_side(0.3), (110, 108, 106)),
+    "the other side": (other_side(0.35), (50, 45, 45)),
+    "a cup": (stained(), (50, 45, 45)),
+    "a crease": (creased(), (50, 45, 45)),
+}
+
+
+@pytest.mark.parametrize("name", FAINT_MARKS)
+def test_what_is_far_fainter_and_softer_was_not_drawn(name: str) -> None:
+    page, pen = FAINT_MARKS[name]
+    sketch = read_picture(encoded(drawn(ink(), paper=page, pen=pen, noise=3)))
+    assert_all(sketch)
+    assert any("far fainter than the pen's" in note for note in sketch.notes)
+
+
+def test_a_paler_pen_draws_too() -> None:
+    some = drawn(ink(), noise=3)
+    cv2.line(some, (400, 470), (660, 450), (150, 150, 150), 4, cv2.LINE_AA)
+    sketch = read_picture(encoded(some))
+    assert len(sketch.strokes) == 5
+    assert sketch.notes == []
+
+
+@pytest.mark.parametrize("upright", [True, False])
+def test_a_margin_is_printed_though_ink_crosses_it(upright: bool) -> None:
+    page = np.full((HEIGHT, WIDTH, 3), 240, np.uint8)
+    ends = ((150, 0), (156, HEIGHT)) if upright else ((0, 348), (WIDTH, 341))
+    cv2.line(page, *ends, (80, 80, 215), 2, cv2.LINE_AA)
+    assert_all(read_picture(encoded(drawn(ink(), paper=page, noise=3))))
+
+
 @pytest.mark.parametrize("kind", ["grey", "16 bits", "16 bits grey", "transparent"])
 def test_kinds_of_pixels(kind: str) -> None:
     picture: np.ndarray = PAPERS["noise"]
