@@ -79,7 +79,7 @@ def _first(
     free = [pick for pick, loss in losses.items() if loss < math.inf]
     arrows = [pick for pick in free if pick in likely]
     if not arrows:
-        others = (proposed[n].candidates[k] for n, k in likely)
+        others = (proposed[n].candidates[k] for n, k in likely if told[n][k] > 0)
         taken = {i for c in others if c.kind != "bar" for i in c.pieces}
         arrows = [(n, k) for n, k in free if taken.isdisjoint(proposed[n].candidates[k].pieces)]
 
