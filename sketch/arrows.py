@@ -13,7 +13,7 @@ from sketch.pieces import Page, Piece
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
 
-__all__ = ["Pick", "pointing"]
+__all__ = ["ONE_ARROW", "Pick", "pointing"]
 
 Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it

@@ -15,6 +15,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.arrows import ONE_ARROW
 from sketch.context import Context
 from sketch.kernel import depth
 from sketch.proposals import Proposals, proposing
@@ -70,9 +71,9 @@ def settle(
     ]
     left = [(ink, saved) for ink, saved in left if len(ink) > 1 and saved > 0]
     context, proposed = Context(), proposing(candidates, gains)
-    likely = [min(group) >= first for group in groups]
+    standing = [min(group) >= first for group in groups]
     ahead = np.array(
-        [AHEAD * (told_on or c) for told_on, c in zip(likely, _around_crosses(candidates), strict=True)]
+        [AHEAD * (told_on or c) for told_on, c in zip(standing, _around_crosses(candidates), strict=True)]
     )
     arrows = [k for k, c in enumerate(candidates) if c.kind == "arrow"]
     if arrows:
@@ -89,13 +90,31 @@ def settle(
             last, chosen = chosen, [live[k] for k in packed if k < len(live)]
             if chosen == last:
                 break
-            told.append(context.told([proposed], [(0, k) for k in chosen], page.size, page.drawn)[0])
+            likely = [(0, k) for k in chosen]
+            told.append(
+                _one_arrow(context.told([proposed], likely, page.size, page.drawn)[0], candidates, chosen)
+            )
             saved = sum(left[k - len(live)][1] for k in packed if k >= len(live))
             if (total := sum(told[-1][k] for k in chosen) + saved) > most:  # as they stand around one another
                 best, most = chosen, total
             # of two sets each may speak for the other: what all of them say in the mean speaks for one
             expected = np.mean(told, axis=0)
     return [ways[i] for k in best for i in groups[k]]
+
+
+def _one_arrow(told: list[float], candidates: list[Fitted], chosen: list[int]) -> list[float]:
+    """The same gains, with the likeliest arrow likelier and the others rarer: of those chosen, or else on ink of
+    nothing that is."""
+    every = [k for k, c in enumerate(candidates) if c.kind == "arrow"]
+    taken = {name for k in chosen if candidates[k].kind != "bar" for name in candidates[k].pieces}
+    arrows = [k for k in every if k in chosen]
+    arrows = arrows or [k for k in every if taken.isdisjoint(candidates[k].pieces)]
+    if not arrows:
+        return told
+    first, out = candidates[max(arrows, key=told.__getitem__)].pieces, list(told)
+    for k in every:
+        out[k] += -ONE_ARROW if set(first).isdisjoint(candidates[k].pieces) else ONE_ARROW
+    return out
 
 
 def _around_crosses(candidates: list[Fitted]) -> list[bool]:
