@@ -10,6 +10,7 @@ from collections.abc import Sequence, Set
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.hatching import hatching
 from sketch.kernel import depth, words
 from sketch.pieces import Page, Piece
 from sketch.proposals import Proposed, Row
@@ -29,9 +30,10 @@ MARKED = (
     1.7  # times that it is as large as a letter there, at most: marks are larger than what is written at them
 )
 NEXT = 0.5  # of the larger stroke: between a letter and the next
-CLEAR = 0.15  # of a body's narrower half: as far from its outline as what is written in it is, at least
+CLEAR = 0.08  # of a body's narrower half: as far from its outline as what is written in it is, at least
 RADIUS = 0.35  # of a ring's extent
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
+HATCHED = WRITTEN  # nats that a stroke of hatching is no side of an outline
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
 MARK = 0.25  # of its length: as large as those are,
 AT_END = 0.05  # and as near to its ends,
@@ -75,7 +77,8 @@ def written(
     measured = {
         i for bar in lines if idle.issuperset(bar.pieces) for i in _measured(page, bar, lone)
     } | pointing
-    touched = rows.of.keys() | measured | letters
+    hatched = hatching(page, marks.largest, idle)
+    touched = rows.of.keys() | measured | letters | hatched
     out = list(told)
     for n, p in enumerate(proposed):
         if touched.isdisjoint(p.alone.pieces):
@@ -86,6 +89,7 @@ def written(
                 own[k] -= marks.loss(rows, c, row)
                 own[k] -= MEASURE * (c.kind == "bar" and not measured.isdisjoint(c.pieces))
                 own[k] -= WITHIN * (c.closed and not letters.isdisjoint(c.pieces))
+                own[k] -= HATCHED * (c.closed and len(hatched.intersection(c.pieces)))
     return out
 
 

@@ -149,13 +149,28 @@ def test_a_dimension_line_is_no_rod(ends: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_hatching_under_a_box_leaves_its_corners_alone(seed: int) -> None:
+@pytest.mark.parametrize(("gap", "count"), [(4, 24), (0, 24), (-1, 40)])
+def test_hatching_under_a_box_leaves_its_corners_alone(seed: int, gap: float, count: int) -> None:
+    """Wherever it begins: below the box, or on its side."""
     rng = np.random.default_rng(seed)
     corners = box(640, 500, 900, 60)
     sides = [line([a, b], HAND, rng)[0] for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
-    hatching = [line([(x, 534), (x - 18, 556)], HAND, rng)[0] for x in np.linspace(200, 1085, 24)]
+    top = 530 + gap
+    hatching = [line([(x, top), (x - 18, top + 22)], HAND, rng)[0] for x in np.linspace(196, 1088, count)]
     scene = recognize(page(sides, hatching)).scene
     assert [len(b.outline()) for b in scene.bodies] == [4]
+
+
+@pytest.mark.parametrize("strokes", [1, 4])
+def test_thin_boxes_side_by_side_are_no_hatching(strokes: int) -> None:
+    rng = np.random.default_rng(strokes)
+    floor = outline(box(640, 600, 1100, 60), HAND, rng)
+    dominoes = []
+    for x in np.linspace(300, 900, 9):
+        v = box(float(x), 539, 14, 60)
+        pairs = zip(v, v[1:] + v[:1], strict=True)
+        dominoes += outline(v, HAND, rng) if strokes == 1 else [line([a, b], HAND, rng)[0] for a, b in pairs]
+    assert len(read(floor, dominoes).scene.bodies) == 10
 
 
 def test_eyes_in_a_ball_are_no_pivots() -> None:
