@@ -204,7 +204,9 @@ def _impulse(scene: Scene, duration: float, fps: float) -> Trajectory:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="stress", description=__doc__.splitlines()[0] if __doc__ else "")
+    parser = argparse.ArgumentParser(
+        prog="sketchsim bench stress", description=__doc__.splitlines()[0] if __doc__ else ""
+    )
     parser.add_argument("--only", default="", help="cases whose name holds this")
     parser.add_argument(
         "--random", type=int, default=0, metavar="N", help="so many random sketches' scenes too"

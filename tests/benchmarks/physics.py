@@ -8,7 +8,6 @@ iterations).
 
 from __future__ import annotations
 
-import argparse
 import math
 import platform
 import sys
@@ -16,9 +15,11 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
+from importlib.util import find_spec
 from statistics import median
 from typing import Any
 
+from cli.arguments import Parser, UsageError, whole_number
 from sim import Scene, simulate
 from sim.bench.cases import CASES, Case, case_error
 from sim.reference import run_pymunk
@@ -149,24 +150,31 @@ def plot(results: dict[str, tuple[list[Point], list[Point]]], path: str) -> None
 
 
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="sketchsim bench physics", description=__doc__)
+    parser = Parser(prog="sketchsim bench physics", description=__doc__)
     parser.add_argument(
         "--plot", metavar="FILE", help="a .png or .svg of error against time (needs matplotlib)"
     )
     parser.add_argument("--only", metavar="NAME", default="", help="cases whose name has this in it")
-    parser.add_argument("--repeat", type=int, default=5, help="runs of each, of which the median counts")
+    parser.add_argument(
+        "--repeat", type=whole_number(1, 1000), default=5, help="runs of each, of which the median counts"
+    )
     options = parser.parse_args(argv)
-    print(f"Python {platform.python_version()}, pymunk {version('pymunk')}, {_processor()}")
+    if options.plot and find_spec("matplotlib") is None:
+        raise UsageError("--plot: matplotlib is not installed", "pip install 'sketchsim[bench]'")
     results: dict[str, tuple[list[Point], list[Point]]] = {}
     known: dict[str, tuple[Scene, float, Case | None]] = {c.name: (c.scene, c.duration, c) for c in CASES}
     crowds: dict[str, tuple[Scene, float, Case | None]] = {
         "pile of 200": (pile(), 10.0, None),
         "40 dominoes": (dominoes(), 10.0, None),
     }
-    for name, what in (known | crowds).items():
-        if options.only in name:
-            results[name] = measure(*what, options.repeat)
-            print(table(name, *results[name]), flush=True)
+    chosen = {name: what for name, what in (known | crowds).items() if options.only in name}
+    if not chosen:
+        names = ", ".join(known | crowds)
+        raise UsageError(f"--only: no case has {options.only!r} in its name", f"the cases are {names}")
+    print(f"Python {platform.python_version()}, pymunk {version('pymunk')}, {_processor()}")
+    for name, what in chosen.items():
+        results[name] = measure(*what, options.repeat)
+        print(table(name, *results[name]), flush=True)
     if options.plot:
         plot(results, options.plot)
     return 0

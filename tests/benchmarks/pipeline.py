@@ -6,7 +6,6 @@ that take turns with what they are compared with.  `sketchsim bench pipeline` pr
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import sys
@@ -15,6 +14,9 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+import cli
+from cli.arguments import Parser, whole_number
 
 __all__ = ["main"]
 
@@ -94,14 +96,17 @@ def take_turns(commands: dict[str, list[str]], runs: int) -> dict[str, Measured]
 
 
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="sketchsim bench pipeline", description=__doc__)
+    parser = Parser(prog="sketchsim bench pipeline", description=__doc__)
     parser.add_argument(
-        "--runs", type=int, default=RUNS, help="of each command, of which the least times count"
+        "--runs",
+        type=whole_number(1, 1000),
+        default=RUNS,
+        help="of each command, of which the least times count",
     )
-    parser.add_argument("--sketches", type=int, default=200, help="in the batch")
+    parser.add_argument("--sketches", type=whole_number(1, 100_000), default=200, help="in the batch")
     options = parser.parse_args(argv)
     # The processes run the package that runs this, be it the source or an installed one.
-    os.chdir(Path(sys.modules["cli"].__file__ or "").resolve().parents[1] if "cli" in sys.modules else ROOT)
+    os.chdir(Path(cli.__file__).resolve().parents[1])
     with tempfile.TemporaryDirectory() as folder:
         videos(Path(folder), options.runs)
         data(Path(folder), options.runs)

@@ -6,7 +6,6 @@ what, what must not change a reading, ink without a meaning, whether scores mean
 
 from __future__ import annotations
 
-import argparse
 import math
 import time
 import zlib
@@ -20,6 +19,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from cli.arguments import Parser, whole_number
 from cli.progress import Progress
 from sim.scene import Body, Circle, Polygon
 from sketch import Recognition, Sketch, Stroke, load_sketch, recognize
@@ -44,15 +44,23 @@ BINS = (0.0, 0.6, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0)
 
 
 def main(argv: list[str]) -> int:
-    p = argparse.ArgumentParser(prog="sketchsim bench recognition", description=__doc__)
+    p = Parser(prog="sketchsim bench recognition", description=__doc__)
     p.add_argument(
         "--corpus", type=Path, metavar="DIR", help="real ink: a folder with dev/*.jsonl.gz and compose.py"
     )
     p.add_argument(
         "--failures", type=Path, metavar="DIR", help="for a picture of each sketch that is read wrong"
     )
-    p.add_argument("--count", type=int, default=504, metavar="N", help="made-up sketches (504)")
-    p.add_argument("--seed", type=int, default=0, metavar="S", help="another seed draws others (0)")
+    p.add_argument(
+        "--count", type=whole_number(1, 1_000_000), default=504, metavar="N", help="made-up sketches (504)"
+    )
+    p.add_argument(
+        "--seed",
+        type=whole_number(0, 999_999_999),
+        default=0,
+        metavar="S",
+        help="another seed draws others (0)",
+    )
     p.add_argument(
         "--paper", action="store_true", help="draw the made-up sketches on paper instead, before a camera"
     )

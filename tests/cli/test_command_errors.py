@@ -88,6 +88,11 @@ def test_output_that_is_a_folder(scene_file: Path, capsys: pytest.CaptureFixture
             "error: --read 3: it cannot be both anchor and ball",
         ),
         (
+            ["bench", "recognition", "--count", "0"],
+            "error: --count: '0' is not a whole number from 1 to 1000000",
+        ),
+        (["bench", "physics", "--only", "no such"], "error: --only: no case has 'no such' in its name"),
+        (
             ["recognize", "-", "--overlay", "seen.jpg"],
             "error: --overlay seen.jpg: '.jpg' is not a known ending",
         ),
