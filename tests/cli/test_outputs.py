@@ -73,7 +73,11 @@ def test_an_interrupted_run_leaves_nothing(scene_file: Path, number: signal.Sign
     # An hour of video: it is surely still being drawn when the signal comes.
     command = [sys.executable, "-m", "cli", "simulate", str(scene_file), "-o", str(folder / "run.mp4")]
     with subprocess.Popen(
-        [*command, "--duration", "3600", "--size", "64x64"], cwd=ROOT, stderr=subprocess.PIPE, text=True
+        [*command, "--duration", "3600", "--size", "64x64"],
+        cwd=ROOT,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background ignores it
     ) as process:
         deadline = time.monotonic() + 30
         while len(os.listdir(folder)) == 1 and time.monotonic() < deadline:

@@ -101,8 +101,8 @@ def test_strokes_are_what_the_caller_says(sketch_file: Path, capsys: pytest.Capt
     assert main(["simulate", str(sketch_file), "-o", str(out), "--read", said, "--duration", "0.1"]) == 0
     for wrong, message in [
         ("3", "'3' is not STROKES=KIND"),
-        ("0=wheel", "'wheel' is not a reading"),
-        ("999=ball", "there is no stroke 999"),
+        ("0=wheel", "--read 0: 'wheel' is not a reading"),
+        ("2,999=ball", "--read 2,999: there is no stroke 999"),
     ]:
         capsys.readouterr()
         assert main(["recognize", str(sketch_file), "-o", str(out), "--read", wrong]) == 2
