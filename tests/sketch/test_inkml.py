@@ -76,13 +76,27 @@ def test_a_context_holds_for_what_follows_and_a_group_for_what_is_in_it() -> Non
     ]
 
 
-def test_channels_of_different_resolution_have_one_scale() -> None:
-    content = """<context id="pen"><inkSource>
-      <traceFormat><channel name="X"/><channel name="Y"/></traceFormat><channelProperties>
-      <channelProperty channel="X" name="resolution" value="100" units="1/mm"/>
-      <channelProperty channel="Y" name="resolution" value="500" units="1/cm"/>
-      </channelProperties></inkSource></context><trace>0 0,10 10</trace>"""
-    assert points(content) == [[[0, 0], [10, 20]]]
+@pytest.mark.parametrize(
+    ("x", "y"),
+    [
+        (("100", "1/mm"), ("500", "1/cm")),
+        (("2540", "1/in"), ("500", "1/cm")),
+        (("1", "1/pt"), ("36", "1/in")),
+        (("1000", "1/m"), ("0.5", "1/mm")),
+    ],
+)
+def test_channels_of_different_resolution_have_one_scale(x: tuple[str, str], y: tuple[str, str]) -> None:
+    """X has twice the resolution of Y."""
+    properties = "".join(
+        f'<channelProperty channel="{name}" name="resolution" value="{value}" units="{units}"/>'
+        for name, (value, units) in (("X", x), ("Y", y))
+    )
+    content = f"""<context id="pen"><inkSource>
+      <traceFormat><channel name="X"/><channel name="Y"/></traceFormat>
+      <channelProperties>{properties}</channelProperties>
+      </inkSource></context><trace>0 0,10 10</trace>"""
+    ((begin, end),) = points(content)
+    assert (begin, end) == ([0, 0], pytest.approx([10, 20]))
 
 
 def test_traces_go_on_and_lifted_pens_leave_no_ink() -> None:
