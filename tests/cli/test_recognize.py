@@ -133,6 +133,20 @@ def test_gravity_of_the_command_line_comes_before_the_drawn(
     assert moving == pytest.approx([-0.2, 0], abs=1e-9)
 
 
+def test_a_gravity_that_is_asked_for_makes_its_note_void_and_no_other(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    drawing = tmp_path / "drawing.json"
+    drawing.write_text(json.dumps({"strokes": [STROKES[0], line((100, 100), (300, 105))]}))
+    argv = ["simulate", str(drawing), "-o", str(tmp_path / "run.csv"), "--duration", "0.1"]
+    assert main(argv) == 0
+    missing, bar = capsys.readouterr().err.splitlines()
+    assert missing == "note: no gravity arrow: nothing will fall"
+    assert "open line" in bar
+    assert main([*argv, "--gravity", "down"]) == 0
+    assert capsys.readouterr().err.splitlines() == [bar]
+
+
 def test_bad_strokes_name_the_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     bad = tmp_path / "bad.json"
     bad.write_text('{"strokes": [{"points": [[1, 2], [3, 4]]}, {"points": [[0, 0], [NaN, 1]]}]}')
