@@ -15,8 +15,7 @@ def probe(tmp_path_factory):
     compiler = backend.find_compiler() or [sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline"]
     built = tmp_path_factory.mktemp("probe") / ("probe" + backend.SUFFIX)
     sources = [*sorted((ROOT / "sim" / "core").glob("*.c")), ROOT / "tests" / "sim" / "probe.c"]
-    flags = [*backend.FLAGS, "-Werror", *backend.position_independent()]
-    subprocess.run([*compiler, *flags, *map(str, sources), "-o", str(built), "-lm"], check=True)
+    subprocess.run(backend.compilation(compiler, list(map(str, sources)), built, ("-Werror",)), check=True)
     return ctypes.CDLL(str(built))
 
 
