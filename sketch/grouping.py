@@ -23,6 +23,7 @@ WIDE = 0.1  # of a chain's ink
 PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
 REFLEX = 0.06  # likewise for each rad that it turns back; as in core/chains.c
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
+LACKS = 0.2  # of what a way of several pieces lacks: likewise
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
 FINE = 8  # steps, at least, in which the way over other ink is looked for, from end to end,
 MOST_STEPS = 1000  # but not more than so many of all of that ink
@@ -44,19 +45,31 @@ def closing_chains(page: Page, start: int) -> list[tuple[float, Chain]]:
     return [(gaps / ink, chain) for gaps, ink, _, chain in tightest[: min(max(close, wide), MOST_CHAINS)]]
 
 
-def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
-    """Other pieces that an open one ends on with both ends, and their ink between these: a side that is shared."""
-    if p.length < BENT * p.gap or not p.gap:
+def closing_ink(page: Page, p: Piece) -> Iterator[tuple[Chain, int, Array]]:
+    """Ways with a piece at one end that end on another piece with both ends: the way, that piece, and its ink between
+    these: a side that is shared."""
+    for way in ([(p.index, False)], *page.open_ways(p.index)):
+        for j, ink in _side_between(page, way):
+            yield way, j, ink
+
+
+def _side_between(page: Page, way: Chain) -> Iterator[tuple[int, Array]]:
+    (first, back), (last, again) = way[0], way[-1]
+    a, b = page.pieces[first].ends[back], page.pieces[last].ends[not again]
+    gap, length, names = math.dist(a, b), sum(page.pieces[i].length for i, _ in way), [i for i, _ in way]
+    if length < BENT * gap or not gap:
         return
-    ends, reach, known = np.array(p.ends), ENDS_ON * p.length, list[Array]()
+    # of several strokes each may go on elsewhere
+    reach = ENDS_ON * length if len(way) == 1 else min(ENDS_ON * length, LACKS * gap)
+    ends, known = np.array([a, b]), list[Array]()
     low, high = (ends.min(axis=0) - reach).tolist(), (ends.max(axis=0) + reach).tolist()
     for q in page.touching(*low, *high):
-        if q is p or not page.apart(q.index, (p.index,)):
+        if q.index in names or 1.3 * q.extent < gap or not page.apart(q.index, names):
             continue
         ink = page.strokes.samples[q.index]
         gaps = _distances(ink, ends)
-        if len(ink) * p.gap < FINE * q.length and gaps.min(axis=0).max() < reach + q.length / len(ink):
-            ink = _course(q, p.gap / FINE)
+        if len(ink) * gap < FINE * q.length and gaps.min(axis=0).max() < reach + q.length / len(ink):
+            ink = _course(q, gap / FINE)
             gaps = _distances(ink, ends)
         if gaps.min(axis=0).max() > reach + q.length / len(ink) / 2:
             continue
@@ -64,11 +77,11 @@ def closing_ink(page: Page, p: Piece) -> Iterator[tuple[int, Array]]:
         count, step = abs(at - to), 1 if at > to else -1
         if q.gap < ENDS_ON * q.length and 2 * count > len(ink):
             count, step = len(ink) - count, -step
-        if not 0 < count * q.length / len(ink) < DETOUR * p.gap:
+        if not 0 < count * q.length / len(ink) < DETOUR * gap:
             continue
         side = ink[(to + step * np.arange(count + 1)) % len(ink)]
         places = side[[count // 4, count // 2, 3 * count // 4]]
-        if all(np.hypot(*(places - others).T).max() > p.gap / FINE + q.length / len(ink) for others in known):
+        if all(np.hypot(*(places - others).T).max() > gap / FINE + q.length / len(ink) for others in known):
             known.append(places)
             yield q.index, side
 

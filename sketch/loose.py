@@ -23,6 +23,9 @@ UNKNOWN = -1  # neighbours that nobody has asked for yet
 
 _pointer, _int = ctypes.c_void_p, ctypes.c_int32
 _chains = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 8, _int, *[_pointer] * 7)(("ink_chains", library()))
+_open_ways = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 8, _int, *[_pointer] * 4)(
+    ("ink_open_ways", library())
+)
 
 
 class LooseEnds:
@@ -61,6 +64,7 @@ class LooseEnds:
             self._asked,
         )
         self._into = [address(array) for array in out]
+        self._into_open = [self._into[k] for k in (0, 1, 5, 6)]
         self._of: list[int | None] = []
 
     def add(self, ends: Array, length: Array) -> None:
@@ -115,4 +119,13 @@ class LooseEnds:
             (gap, long, back, [(end // 2, end % 2 == 1) for end in row[:parts]])
             for gap, long, back, row, parts in zip(*(of[:count].tolist() for of in out), strict=True)
         ]
+        return found, set(self._asked[1 : 1 + self._asked[0]].tolist())
+
+    def open_ways(self, start: int) -> tuple[list[Chain], set[End]]:
+        """Orders of two pieces or more, of which `start` is at an end, whose ends meet but for those of the
+        whole, where no other goes on: perhaps another body has the side that lacks; and the ends whose neighbours
+        matter to that."""
+        count = _open_ways(len(self.loose), *self._of, start, *self._into_open)
+        links, parts = self._links[:count].tolist(), self._parts[:count].tolist()
+        found = [[(end // 2, end % 2 == 1) for end in row[:n]] for row, n in zip(links, parts, strict=True)]
         return found, set(self._asked[1 : 1 + self._asked[0]].tolist())

@@ -16,7 +16,7 @@ from sketch.loose import Chain
 from sketch.pieces import Page, Piece
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit
 
-__all__ = ["LEAST_AXIS", "gone_over", "read_outline"]
+__all__ = ["LEAST_AXIS", "gone_over", "read_borrowing", "read_outline"]
 
 Array = NDArray[np.float64]
 
@@ -50,17 +50,12 @@ _ANGLES = np.linspace(0, 2 * math.pi, 24, endpoint=False)
 _RING = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
 
 
-def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fitted]:
-    """The readings of pieces that go once around, one of each kind.
-
-    over: other ink that closes them, from the last end to the first [pixels], (n, 2): a side that is shared.
-    """
+def read_outline(page: Page, chain: Chain) -> list[Fitted]:
+    """The readings of pieces that go once around, one of each kind."""
     pieces = page.pieces
     names = tuple(sorted(i for i, _ in chain))
     count = sum(pieces[i].observations for i in names)
     parts = [pieces[i].points[::-1] if back else pieces[i].points for i, back in chain]
-    if over is not None:
-        return _read(page, names, [*parts, over], count, SHARED)
     out = _read(page, names, parts, count)
     least = min(f.cost for f in out)
     p = pieces[names[0]]
@@ -84,6 +79,16 @@ def read_outline(page: Page, chain: Chain, over: Array | None = None) -> list[Fi
         return out
     other = _read(page, names, [closed[0]], count - tails, FREE * tails)
     return other if min(f.cost for f in other) < least else out
+
+
+def read_borrowing(page: Page, way: Chain, lender: int, side: Array) -> list[Fitted]:
+    """The readings of pieces that lack a side, which another piece lends: its ink from their last end to their first
+    [pixels], (n, 2)."""
+    names = tuple(sorted(i for i, _ in way))
+    count = sum(page.pieces[i].observations for i in names)
+    parts = [page.pieces[i].points[::-1] if back else page.pieces[i].points for i, back in way]
+    said = SHARED + PARAMETER * (len(way) - 1)  # whoever drew several sides mostly drew all
+    return [replace(f, lender=lender) for f in _read(page, names, [*parts, side], count, said)]
 
 
 def _read(

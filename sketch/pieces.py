@@ -207,6 +207,12 @@ class Page:
         self.looked.ends |= asked
         return found
 
+    def open_ways(self, start: int) -> list[Chain]:
+        """As of `LooseEnds.open_ways`."""
+        found, asked = self.ends.open_ways(start)
+        self.looked.ends |= asked
+        return found
+
 
 def page_of(sketch: Sketch) -> Page:
     """All strokes of a sketch, measured, none of them loose yet."""

@@ -23,7 +23,7 @@ from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, in_line,
 from sketch.kernel import off_outline
 from sketch.loose import Chain, End
 from sketch.marks import read_arrows, read_bar, read_bar_of_two, read_cross, read_line, with_strays
-from sketch.outlines import LEAST_AXIS, gone_over, read_outline
+from sketch.outlines import LEAST_AXIS, gone_over, read_borrowing, read_outline
 from sketch.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted, misfit_of
 from sketch.search import Part, part
@@ -65,7 +65,7 @@ class Proposed:
     Attributes:
         candidates: readings of groups that it leads, and gains: what each saves against saying its ink freely.
         rows: of the outline of each its least x and y, greatest x and y, and extent [pixels].  box: around them all.
-        arrows, bars: which of them are these.
+        arrows, bars: which of them are these.  borrowing: whether some have a side of another body.
         alone: what they gain by themselves.
         looked: what it saw of the page; seen: the box around all boxes of it.
         fits: of which they were made.
@@ -77,6 +77,7 @@ class Proposed:
     box: Box
     arrows: list[int]
     bars: list[int]
+    borrowing: bool
     alone: Part
     looked: Looked
     seen: Box
@@ -205,8 +206,10 @@ class Proposals:
                 whole.append((gap, group))
             out += found
             out += _again(page, found, self.free)
-        for j, ink in () if alone.complete else closing_ink(page, p):
-            out += fitted(((p.index, j), "over"), partial(read_outline, page, [(p.index, False)], ink))
+        for way, j, ink in () if alone.complete else closing_ink(page, p):
+            out += fitted(
+                ((*(i for i, _ in way), j), ("borrowing", *way)), partial(read_borrowing, page, way, j, ink)
+            )
         out += _kept(read_bar(p)) + _kept(read_line(p))
         out += [bar for q in in_line(page, p) for bar in _kept(read_bar_of_two(page, p, q))]
         if not alone.plain:
@@ -258,6 +261,7 @@ def proposing(
         box,
         arrows=[k for k, c in enumerate(candidates) if c.kind == "arrow"],
         bars=[k for k, c in enumerate(candidates) if c.kind == "bar"],
+        borrowing=any(c.lender >= 0 for c in candidates),
         alone=part([c.pieces for c in candidates], gains),
         looked=seen,
         seen=_around(seen.boxes),

@@ -45,6 +45,8 @@ Array = NDArray[np.float64]
 
 SAME_PLACE = 0.2  # of a body's size: outlines nowhere further apart are one body, gone over
 KINDS = {"ellipse": "polygon", "free": "polygon", "cross": "anchor", "arrow": "gravity"}
+LENDING = 3  # times, at most, that readings are chosen anew without the sides that no body lent
+NOT_LENT = 1e3  # nats that these lose
 FORCED = 1e6  # nats that a reading gains by having been said by the caller
 MANY = 8  # sides from which on nobody counts them
 
@@ -193,15 +195,39 @@ class Recognizer:
         told = self._context.told(proposed, likely, page.size, page.drawn)
         told, elsewhere = pointing(page, proposed, told, likely)
         told = written(page, proposed, told, likely, elsewhere)
+        best = self._packed(proposed, told)
+        for _ in range(LENDING):
+            # a body lends its side, an arrow or an X none: that is known of the whole answer alone
+            lost = _not_lent([proposed[p].candidates[k] for p, k in best])
+            if not lost:
+                break
+            told = [
+                [gain - NOT_LENT * (c.lender in lost) for c, gain in zip(p.candidates, gains, strict=True)]
+                if p.borrowing
+                else gains
+                for p, gains in zip(proposed, told, strict=True)
+            ]
+            best = self._packed(proposed, told)
+        chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in best]
+        lost = _not_lent([c for c, _ in chosen])
+        chosen = [t for t in chosen if t[0].lender not in lost]
+        return proposed, told, _whole_arrows(_one_a_place(chosen))
+
+    def _packed(self, proposed: list[Proposed], told: list[list[float]]) -> list[Pick]:
+        """The best set of readings, each ink in one, given what all of them gain."""
         known, self._parts = self._parts, {}
         for p, gains in zip(proposed, told, strict=True):
             there = known.get(p)
             if there is None or there[0] != gains:
                 there = gains, part([c.pieces for c in p.candidates], gains)
             self._parts[p] = there
-        best = self._together.best([self._parts[p][1] for p in proposed])
-        chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in best]
-        return proposed, told, _whole_arrows(_one_a_place(chosen))
+        return self._together.best([self._parts[p][1] for p in proposed])
+
+
+def _not_lent(chosen: list[Fitted]) -> set[int]:
+    """The pieces of which readings borrow a side while they are of no body."""
+    solid = {i for c in chosen if c.kind not in ("cross", "arrow") for i in c.pieces}
+    return {c.lender for c in chosen if c.lender >= 0} - solid
 
 
 def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> list[Proposed]:

@@ -48,6 +48,7 @@ class Fitted:
         rough: nats to say the ink, given the outline, of which a clean one takes ten or so.
         gap: of a closed outline: what is missing of it, as a share of its ink.
         next: of a polygon: the number of sides that comes next, and the nats that it takes more.
+        lender: the piece of another body of which it borrows a side, or -1.
         figure: of a cross or an arrow: a closed polygon along all that may be drawn of it [pixels], (n, 2).
     """
 
@@ -61,6 +62,7 @@ class Fitted:
     rough: float = 0.0
     next: tuple[int, float] = (0, math.inf)
     figure: Array | None = None
+    lender: int = -1
 
     @property
     def closed(self) -> bool:

@@ -9,6 +9,8 @@ enum {
     MOST_PARTS = 6,   /* of one outline: people draw a box in one to five strokes */
     BREADTH = 80, /* ways of so many parts that are gone on with, the tightest: in shading every end has many near it */
     MOST_STEPS = 1 + CHOICES + CHOICES * CHOICES + 3 * BREADTH, /* ways from one piece, at most */
+    MOST_SIDES = 3, /* of those that lack a side of another body */
+    MOST_OPEN = 32, /* of such ways from one piece */
     UNKNOWN = -1
 };
 
@@ -17,6 +19,10 @@ static const double LOOSE = 0.3; /* gaps of a chain, as a share of its ink, over
 static const double REFLEX = 0.06;
 static const double ABOUT = 2.5; /* rad: a turn of more may as well go the other way */
 static const double CURLED = 0.3; /* of a piece's length: with ends no further apart it goes no certain way */
+/* of a way that lacks a side: as far as its ends are apart at least, and as its pieces are from those they go on to at most, */
+static const double TIGHT = 0.05, JOINED = 0.12;
+static const double BENT = 1.4; /* times as long as what it lacks it is at least, */
+static const double STRAIGHT_ON = 0.5; /* and how far it turns back, at most [rad] */
 static const double REACH = 1.5 * 0.3; /* the longest single gap, as a share of the pieces on its two sides */
 
 typedef struct {
@@ -115,12 +121,16 @@ static void keep(Search *s, const Chain *way, double gaps) {
     s->best[s->found++] = chain;
 }
 
+/* Whether a piece is on a way, or is the same ink as one that is. */
+static int on(const Search *s, const Chain *way, int piece) {
+    for (int k = 0; k < way->parts; k++)
+        if (way->links[k] / 2 == piece || !apart(s, piece, way->links[k] / 2)) return 1;
+    return 0;
+}
+
 /* Whether a piece may follow on a way: drawn after its first, not on it, and of other ink. */
 static int may_follow(const Search *s, const Chain *way, int piece) {
-    if (piece <= way->links[0] / 2) return 0;
-    for (int k = 0; k < way->parts; k++)
-        if (way->links[k] / 2 == piece || !apart(s, piece, way->links[k] / 2)) return 0;
-    return 1;
+    return piece > way->links[0] / 2 && !on(s, way, piece);
 }
 
 /* Close a way, if it is tight enough then, and go on with it: its continuations go among the BREADTH tightest. Returns how
@@ -151,16 +161,8 @@ static int extend(Search *s, const Chain *way, Chain *longer, int count) {
     return count;
 }
 
-/* Chains that close and of which piece `start` is the first: each set of pieces in its tightest order.
- *
- * rows .. gap: as in Search; from may be null: no two pieces share ink.
- * Out: links (MOST_STEPS, MOST_PARTS), and of each chain parts, gaps [pixels], ink [pixels] and how far it turns
- * back [rad]; ends: those whose neighbours
- * were asked for, MOST_STEPS at most, asked: how many. Returns the number of chains. */
-INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length, const uint8_t *loose,
-                           const int32_t *rivals, const int32_t *from, int32_t *count, int32_t *near, double *gap,
-                           int32_t start, int32_t *links, int32_t *parts, double *gaps, double *ink, double *back,
-                           int32_t *ends, int32_t *asked) {
+static Search search(int rows, const double *at, const double *length, const uint8_t *loose, const int32_t *rivals,
+                     const int32_t *from, int32_t *count, int32_t *near, double *gap, int32_t *ends) {
     Search s;
     s.rows = rows;
     s.at = at;
@@ -173,6 +175,20 @@ INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length,
     s.gap = gap;
     s.found = s.asked = 0;
     s.ends = ends;
+    return s;
+}
+
+/* Chains that close and of which piece `start` is the first: each set of pieces in its tightest order.
+ *
+ * rows .. gap: as in Search; from may be null: no two pieces share ink.
+ * Out: links (MOST_STEPS, MOST_PARTS), and of each chain parts, gaps [pixels], ink [pixels] and how far it turns
+ * back [rad]; ends: those whose neighbours
+ * were asked for, MOST_STEPS at most, asked: how many. Returns the number of chains. */
+INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length, const uint8_t *loose,
+                           const int32_t *rivals, const int32_t *from, int32_t *count, int32_t *near, double *gap,
+                           int32_t start, int32_t *links, int32_t *parts, double *gaps, double *ink, double *back,
+                           int32_t *ends, int32_t *asked) {
+    Search s = search(rows, at, length, loose, rivals, from, count, near, gap, ends);
     /* Of few parts first: what two pieces make is seen however many others lie about. */
     Chain ways[2][BREADTH] = {{{.links = {2 * start}, .parts = 1, .from = 2 * start, .ink = length[2 * start]}}};
     for (int parts = 1, count = 1; count > 0; parts++) {
@@ -188,6 +204,65 @@ INK_API int32_t ink_chains(int32_t rows, const double *at, const double *length,
         gaps[c] = s.best[c].gaps;
         ink[c] = s.best[c].ink;
         back[c] = fmin(s.best[c].left, s.best[c].right);
+    }
+    *asked = s.asked;
+    return s.found;
+}
+
+/* Whether the side that would close a way at an end may be another body's: not where the only other piece that ends there is no
+ * longer than what is missing, and so is that side. */
+static int may_lack(Search *s, const Chain *way, int end, double closing) {
+    int others = 0, sides = 0;
+    if (s->count[end] == UNKNOWN) look_around(s, end);
+    for (int c = 0; c < s->count[end]; c++) {
+        int other = s->near[CHOICES * end + c];
+        if (s->gap[CHOICES * end + c] >= TIGHT * way->ink || on(s, way, other / 2)) continue;
+        others++;
+        sides += s->length[other] < BENT * closing;
+    }
+    return others != 1 || sides != 1;
+}
+
+/* Note a way if a side of another body may close it, and go on with it. */
+static void go_on(Search *s, const Chain *way) {
+    int start = way->links[0], last = way->links[way->parts - 1] ^ 1;
+    double closing = hypot(s->at[2 * last] - s->at[2 * start], s->at[2 * last + 1] - s->at[2 * start + 1]);
+    if (s->asked < MOST_STEPS) s->ends[s->asked++] = last;
+    if (s->count[last] == UNKNOWN) look_around(s, last);
+    if (way->parts > 1 && start / 2 < last / 2 && closing > TIGHT * way->ink && BENT * closing < way->ink &&
+        may_lack(s, way, start, closing) && may_lack(s, way, last, closing) && s->found < MOST_OPEN)
+        s->best[s->found++] = *way;
+    if (way->parts == MOST_SIDES) return;
+    for (int c = 0; c < s->count[last]; c++) {
+        int next = s->near[CHOICES * last + c];
+        Chain more = *way;
+        more.ink += s->length[next];
+        more.gaps += s->gap[CHOICES * last + c];
+        if (s->gap[CHOICES * last + c] > JOINED * more.ink || on(s, way, next / 2)) continue;
+        turn(s, &more, next, more.gaps - way->gaps);
+        more.links[more.parts++] = next;
+        if (fmin(more.left, more.right) < STRAIGHT_ON) go_on(s, &more);
+    }
+}
+
+/* Ways of two pieces or more, of which `start` is at an end, and drawn before that at the other, that lack a side which may
+ * be another body's.
+ *
+ * rows .. gap: as in Search.  Out: links (MOST_OPEN, MOST_PARTS) and parts of each; ends: those whose neighbours were asked
+ * for, MOST_STEPS at most, asked: how many. Returns the number of ways. */
+INK_API int32_t ink_open_ways(int32_t rows, const double *at, const double *length, const uint8_t *loose,
+                              const int32_t *rivals, const int32_t *from, int32_t *count, int32_t *near, double *gap,
+                              int32_t start, int32_t *links, int32_t *parts, int32_t *ends, int32_t *asked) {
+    Search s = search(rows, at, length, loose, rivals, from, count, near, gap, ends);
+    for (int back = 0; back < 2; back++) {
+        int end = 2 * start + back;
+        Chain way = {.links = {end}, .parts = 1, .from = end, .ink = length[end]};
+        if (s.asked < MOST_STEPS) s.ends[s.asked++] = end;
+        go_on(&s, &way);
+    }
+    for (int w = 0; w < s.found; w++) {
+        memcpy(links + MOST_PARTS * w, s.best[w].links, sizeof s.best[w].links);
+        parts[w] = s.best[w].parts;
     }
     *asked = s.asked;
     return s.found;
