@@ -73,7 +73,7 @@ def _side_between(page: Page, way: Chain) -> Iterator[tuple[int, Array]]:
             gaps = _distances(ink, ends)
         if gaps.min(axis=0).max() > reach + q.length / len(ink) / 2:
             continue
-        to, at = gaps.argmin(axis=0).tolist()  # from its last end, over the other's ink, to its first
+        at, to = gaps.argmin(axis=0).tolist()  # from its last end, over the other's ink, to its first
         count, step = abs(at - to), 1 if at > to else -1
         if q.gap < ENDS_ON * q.length and 2 * count > len(ink):
             count, step = len(ink) - count, -step
