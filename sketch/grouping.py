@@ -24,6 +24,7 @@ PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is on
 REFLEX = 0.06  # likewise for each rad that it turns back; as in core/chains.c
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
 LACKS = 0.2  # of what a way of several pieces lacks: likewise
+WHOLE = 0.8  # of a piece, between the ends of a way: it is that way's own side
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
 FINE = 8  # steps, at least, in which the way over other ink is looked for, from end to end,
 MOST_STEPS = 1000  # but not more than so many of all of that ink
@@ -78,6 +79,8 @@ def _side_between(page: Page, way: Chain) -> Iterator[tuple[int, Array]]:
         if q.gap < ENDS_ON * q.length and 2 * count > len(ink):
             count, step = len(ink) - count, -step
         if not 0 < count * q.length / len(ink) < DETOUR * gap:
+            continue
+        if len(way) > 1 and count > WHOLE * len(ink):
             continue
         side = ink[(to + step * np.arange(count + 1)) % len(ink)]
         places = side[[count // 4, count // 2, 3 * count // 4]]

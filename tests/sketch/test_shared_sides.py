@@ -34,7 +34,7 @@ def test_boxes_of_a_pile_stand_on_each_other_s_top(seed: int) -> None:
     rng = np.random.default_rng(seed)
     ground = outline(box(640, 630, 1000, 60), NEAT, rng)
     strokes, y = [ground], 600.0
-    for k, width in enumerate((170, 150, 125)):
+    for k, width in enumerate((180, 135, 100)):
         x, top = 640 - width / 2, y - 90
         left = line([(x, y - 3), (x, top)], NEAT, rng)
         over = line([(x + 2, top), (x + width, top + 2)], NEAT, rng)
