@@ -174,7 +174,8 @@ def work(task: Task, settings: dict[str, Any]) -> Done:
             loaded = load_bytes(data, task.source, Way(None if is_scene(data) else options.scale))
             motion = motion_of(loaded, options, notes.append)
     except InputError as e:
-        return Done(task.name, {}, notes, str(e), e.kind, e.hint)
+        problem = str(e) if task.line is None else str(e).replace(": line 1 column ", " column ", 1)
+        return Done(task.name, {}, notes, problem, e.kind, e.hint)
     except Exception as e:  # whatever is wrong with one, the others are run
         problem = f"{task.source}: something inside failed: {type(e).__name__}: {e}"
         return Done(task.name, {}, notes, problem, "inside")

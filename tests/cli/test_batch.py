@@ -102,7 +102,7 @@ def test_a_bad_line_is_told_and_the_others_are_run(folder: Path, capsys: pytest.
     argv = ["batch", str(lines), "-o", str(out), "--data", "csv", "--duration", "1", "--workers", "1"]
     assert main(argv) == 3
     (error,) = capsys.readouterr().err.splitlines()
-    assert error.startswith(f"error: {lines} line 2: ")
+    assert error.startswith(f"error: {lines} line 2 column 2: not JSON: ")
     assert sorted(path.name for path in out.glob("*.csv")) == ["many-1.csv", "many-3.csv"]
 
 
