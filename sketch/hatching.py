@@ -7,7 +7,7 @@ from collections.abc import Set
 
 import numpy as np
 
-from sketch.pieces import Page
+from sketch.pieces import Page, Piece
 
 __all__ = ["hatching"]
 
@@ -25,13 +25,13 @@ def hatching(page: Page, largest: float, idle: Set[int]) -> set[int]:
 
     largest: [pixels]; longer ones are none.  idle: those that mean nothing by themselves.
     """
-    straight = [
-        p
-        for p in page.pieces.values()
-        if p.gap < largest and p.straight < STRAIGHT and p.gap > 0.9 * p.length
-    ]
-    if sum(p.index in idle for p in straight) < FEWEST - BUT:
+
+    def may_be(p: Piece) -> bool:
+        return p.gap < largest and p.gap > 0.9 * p.length and p.straight < STRAIGHT
+
+    if sum(may_be(page.pieces[i]) for i in idle) < FEWEST - BUT:
         return set()
+    straight = [p for p in page.pieces.values() if may_be(p)]
     ends = np.array([p.ends for p in straight]) @ (1, 1j)
     ways, middles = ends[:, 1] - ends[:, 0], (ends[:, 0] + ends[:, 1]) / 2
     longs = np.abs(ways)

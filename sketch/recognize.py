@@ -340,7 +340,7 @@ def _rivals(c: Fitted, gain: float, proposed: list[tuple[Proposed, list[float]]]
 
     def add(kind: str, meaning: str | int, less: float, alike: bool = False) -> None:
         there = best.get((meaning, alike))
-        if meaning != own and less < (math.inf if there is None else there.behind):
+        if less < (math.inf if there is None else there.behind):
             sides = kind == "polygon" and meaning != MANY
             its = f"polygon of {meaning} sides" if sides else KINDS.get(kind, kind)
             best[meaning, alike] = Rival(its, less, alike)
@@ -349,9 +349,10 @@ def _rivals(c: Fitted, gain: float, proposed: list[tuple[Proposed, list[float]]]
     for p, gains in proposed:
         for other, its in zip(p.candidates, gains, strict=True):
             if other.pieces == c.pieces:
-                add(other.kind, _meaning(other), gain - its, {c.kind, other.kind} == {"circle", "ellipse"})
-                sides, more = other.next
-                if sides:
+                meaning, (sides, more) = _meaning(other), other.next
+                if meaning != own:
+                    add(other.kind, meaning, gain - its, {c.kind, other.kind} == {"circle", "ellipse"})
+                if sides and min(sides, MANY) != own:
                     add("polygon", min(sides, MANY), gain - its + more)
     return list(best.values())
 

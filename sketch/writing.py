@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence, Set
+from collections.abc import Iterator, Sequence, Set
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sketch.hatching import hatching
-from sketch.kernel import depth, words
+from sketch.kernel import Point, depth, words
 from sketch.pieces import Page, Piece
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
@@ -136,7 +136,9 @@ class _Marks:
             return 0.0
         beside = rows.beside(c.pieces, extent)
         if beside and c.closed:  # what is written in a body does not make a letter of it
-            beside -= sum(self._holds(c, i) for i in rows.idle(c.pieces, extent) if self._is_in(where, i))
+            x0, y0, x1, y1, _ = where
+            for i, (x, y) in rows.smaller(c.pieces, extent):
+                beside -= x0 < x < x1 and y0 < y < y1 and self._holds(c, i)
         if not beside or c.kind not in ("circle", "cross"):
             return WRITTEN * beside
         under = self._under(c, extent)
@@ -168,11 +170,6 @@ class _Marks:
         other = samples[self._page.pieces[i].stroke, None, ::2]
         inks = (samples[self._page.pieces[j].stroke, ::2, None] for j in c.pieces)
         return any(float(np.hypot(*(ink - other).transpose(2, 0, 1)).min()) < NEXT * large for ink in inks)
-
-    def _is_in(self, where: Row, i: int) -> bool:
-        """Whether the middle of a stroke is in a box."""
-        (x0, y0, x1, y1), (a, b, c, d, _) = self._page.pieces[i].box, where
-        return a < (x0 + x1) / 2 < c and b < (y0 + y1) / 2 < d
 
     def _holds(self, body: Fitted, i: int) -> bool:
         """Whether a stroke is within a body, clear of its outline: not a spoke."""
@@ -218,6 +215,8 @@ class _Rows:
         """near: of each small stroke the others that may be in one word with it."""
         self.of: dict[int, tuple[list[float], list[int]]] = {}
         self._idle = {i: TALL * page.pieces[i].extent for i in near.keys() & idle}
+        boxes = {i: page.pieces[i].box for i in self._idle}
+        self._middles = {i: ((x0 + x1) / 2, (y0 + y1) / 2) for i, (x0, y0, x1, y1) in boxes.items()}
         for start in self._idle:
             if start in self.of:
                 continue
@@ -242,6 +241,13 @@ class _Rows:
         rows = {id(row): row for i in pieces if (row := self.of.get(i))}
         large = (i for tall, its in rows.values() for i in its[bisect_right(tall, extent) :])
         return [i for i in large if i not in pieces]
+
+    def smaller(self, pieces: Sequence[int], extent: float) -> Iterator[tuple[int, Point]]:
+        """Those of them that are not larger themselves, each with its middle [pixels]."""
+        for tall, its in {id(row): row for i in pieces if (row := self.of.get(i))}.values():
+            for i in its[bisect_right(tall, extent) : bisect_right(tall, TALL * extent)]:
+                if i not in pieces:
+                    yield i, self._middles[i]
 
 
 def _boxes_near(p: Piece, q: Piece, reach: float) -> bool:
