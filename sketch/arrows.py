@@ -50,16 +50,18 @@ def pointing(
     chosen = [(proposed[n].candidates[k], proposed[n].rows[k]) for n, k in likely]
     losses = dict(zip(every, _losses(page, arrows, chosen), strict=True))
     first = _first(proposed, told, likely, losses)
-    its: set[int] = set() if first is None else set(proposed[first[0]].candidates[first[1]].pieces)
-    most = math.inf if first is None else told[first[0]][first[1]] - losses[first] + ONE_ARROW
+    its, most = set[int](), math.inf
+    if first is not None:
+        its.update(proposed[first[0]].candidates[first[1]].pieces)
+        most = told[first[0]][first[1]] - losses[first] + ONE_ARROW - SECOND
     out = list(told)
     for (n, k), loss in losses.items():
         out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
-        c = proposed[n].candidates[k]
-        if its.isdisjoint(c.pieces):
-            own[k] = min(own[k] - loss - ONE_ARROW, most - SECOND)
-        else:
-            own[k] += ONE_ARROW - loss
+        own[k] -= loss
+        if its and its.isdisjoint(proposed[n].candidates[k].pieces):
+            own[k] = min(own[k] - ONE_ARROW, most)
+        elif its:
+            own[k] += ONE_ARROW
     other = {
         i
         for pick in likely

@@ -92,3 +92,13 @@ def test_an_arrow_beside_a_wall_is_gravity(seed: int) -> None:
     seen = read(wall, arrow((450, 200), (452, 320), HAND, rng))
     assert is_down(seen)
     assert len(seen.scene.bodies) == 1
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("tip", [1165, 1166])
+def test_an_arrow_whose_barb_crosses_its_shaft_is_gravity(seed: int, tip: float) -> None:
+    """By its ink alone it is rather an X, and there is no body that it would fix."""
+    rng = np.random.default_rng(seed)
+    shaft = line([(1180, 100), (1182, 250)], HAND, rng)
+    head = line([(1140, 194), (tip, 250), (1224, 194)], HAND, rng)
+    assert is_down(read(scenery(rng), shaft, head))
