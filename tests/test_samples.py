@@ -105,6 +105,16 @@ def misread(page: draw.Page, scene: Scene) -> list[str]:
     return wrong
 
 
+@pytest.mark.parametrize("name", ["cart", "seesaw", "ramp", "stack"])
+def test_what_shares_lines_is_read_from_paper_too(name: str) -> None:
+    import cv2
+    from on_paper import picture
+
+    page = draw.page_of(name)
+    scene = recognize(load_sketch(cv2.imencode(".png", picture(page, "scan"))[1].tobytes())).scene
+    assert misread(page, scene) == []
+
+
 @pytest.mark.parametrize("name", draw.MACHINES)
 def test_the_drawing_is_read_as_it_was_meant(name: str) -> None:
     scene = recognize(load_sketch(SAMPLES / f"{name}.json")).scene

@@ -53,7 +53,8 @@ def _standing(sheet: Sheet, stretches: Stretches) -> list[Way]:
 
 
 def _lent(near: list[frozenset[int]], k: int) -> list[frozenset[int]]:
-    """Which ink beside an outline may be others': none, each neighbour's, all the earlier ones', all the later ones'.
+    """Which ink beside an outline may be others': none, each neighbour's, all the earlier ones', all the later ones',
+    all neighbours'.
 
     None where it has nothing in common with another.
     """
@@ -61,4 +62,5 @@ def _lent(near: list[frozenset[int]], k: int) -> list[frozenset[int]]:
     lent = [frozenset[int](), *(side for _, side in sides)]
     lent.append(frozenset().union(*(side for n, side in sides if n < k)))
     lent.append(frozenset().union(*(side for n, side in sides if n > k)))
+    lent.append(frozenset().union(*(side for _, side in sides)))
     return [side for side in dict.fromkeys(lent) if side < near[k]] if sides else []

@@ -27,7 +27,8 @@ Points = NDArray[np.float64]
 SOLID = 0.9  # of its hull's area: what a convex outline drawn by hand has at least
 MOST_FACES = 24  # that hang together: more are a grid, or shading
 MOST_UNIONS = 100  # that are looked at, from each face
-MOST_BODIES = 80  # of those that are convex
+MOST_BODIES = 120  # of those that are convex
+ROWS = 32  # of a product of matrices at a time
 BODY = 20.0  # nats to say one more body,
 LEFT = 25.0  # to leave a line over,
 SHARED = 60.0  # for two outlines that are the same in full, in part for a part,
@@ -55,7 +56,19 @@ def overlapping(sheet: Sheet, rings: list[Points], stretches: Stretches) -> list
         bodies = _unions(sheet, knot)
         chosen = _fewest(bodies, sheet.length, knot.pivots) if 1 < len(bodies) <= MOST_BODIES else []
         if len(chosen) > 1:
-            out += _ways([bodies[k].outline for k in chosen], stretches)
+            some = [bodies[k] for k in chosen]
+            out += _ways([body.outline for body in some], _grounds(sheet, some, stretches), stretches)
+    return out
+
+
+def _grounds(sheet: Sheet, bodies: list[_Body], stretches: Stretches) -> list[frozenset[int]]:
+    """For each of some bodies the ink along what it stands on: faces beside it and beside those that overlap it."""
+    out = []
+    for body in bodies:
+        over = (other.faces for other in bodies if not other.faces.isdisjoint(body.faces))
+        beside = set[int]().union(*(sheet.neighbours[f] for f in body.faces)).difference(*over)
+        grounds = (sheet.outline({f}) for f in beside if not sheet.is_thin(sheet.faces[f]))
+        out.append(frozenset[int]().union(*(stretches.beside(ground.points) for ground in grounds)))
     return out
 
 
@@ -152,7 +165,7 @@ def _fewest(bodies: list[_Body], length: dict[int, float], pivots: list[int]) ->
     lines = sorted({e for body in bodies for e in body.outline.lines})
     has = np.array([[e in body.outline.lines for e in lines] for body in bodies], dtype=float)
     over = np.array([[f in body.faces for f in pivots] for body in bodies], dtype=float)
-    both = has * [length[e] for e in lines] @ has.T
+    both = _product(has * [length[e] for e in lines], has.T)
     least = np.minimum.outer(np.diag(both), np.diag(both))
     cost = SHARED * both / np.maximum(least, 1e-9)
     np.fill_diagonal(cost, 0.0)
@@ -161,7 +174,7 @@ def _fewest(bodies: list[_Body], length: dict[int, float], pivots: list[int]) ->
     def saved(mask: NDArray[np.float64], of: NDArray[np.float64]) -> NDArray[np.float64]:
         """For each pair of bodies how many of the columns of `mask` either has."""
         one = of @ mask
-        return np.asarray(one[:, None] + one - (of * mask) @ of.T)
+        return np.asarray(one[:, None] + one - _product(of * mask, of.T))
 
     chosen: list[int] = []
     best = np.inf
@@ -189,8 +202,14 @@ def _fewest(bodies: list[_Body], length: dict[int, float], pivots: list[int]) ->
         chosen = found
 
 
-def _ways(outlines: list[Outline], stretches: Stretches) -> list[Way]:
-    """Ways along the outlines of bodies that overlap: each with its share of the ink, and with all of it."""
+def _product(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """a @ b, a few rows at a time: larger products are shared among threads, which takes longer than they do."""
+    return np.concatenate([a[k : k + ROWS] @ b for k in range(0, len(a), ROWS)])
+
+
+def _ways(outlines: list[Outline], grounds: list[frozenset[int]], stretches: Stretches) -> list[Way]:
+    """Ways along the outlines of bodies that overlap: each with its share of the ink, and with all of it, and both
+    without the ink of what it stands on."""
     near = [stretches.beside(outline.points) for outline in outlines]
     mine: list[list[int]] = [[] for _ in outlines]
     had = [0.0 for _ in outlines]
@@ -204,7 +223,7 @@ def _ways(outlines: list[Outline], stretches: Stretches) -> list[Way]:
             had[k] += len(ink[name])
     return [
         Way(outline.points, {name: ink[name] for name in sorted(names)}, outline.strain)
-        for outline, along, own in zip(outlines, near, mine, strict=True)
-        for names in dict.fromkeys((along, frozenset(own)))
+        for outline, along, own, ground in zip(outlines, near, map(frozenset, mine), grounds, strict=True)
+        for names in dict.fromkeys((along, own, along - ground, own - ground))
         if names
     ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import cv2
 import numpy as np
 import pytest
@@ -153,3 +155,24 @@ def test_the_least_movement_along_all_lines_goes_over_the_shortest_twice() -> No
     graph = build_graph(trace(skeleton, size), cv2.distanceTransform(mask, cv2.DIST_L2, 3), 4.0)
     lengths = [np.hypot(*np.diff(way.points, axis=0).T).sum() for way in Ways(graph, 4.0).others()]
     assert max(lengths) == pytest.approx(300 + 2 * 56.6 + 113.1, abs=12)
+
+
+def test_every_brick_of_a_wall_is_a_body() -> None:
+    rows = [(100, 260, 420), (100, 180, 420), (100, 300, 420), (100, 220, 420)]
+    bricks: list[Line] = []
+    for k, ends in enumerate(rows):
+        top, low = 100 + 50 * k, 150 + 50 * k
+        for a, b in pairwise(ends):
+            bricks.append([(a, top + 1), (b, top), (b + 1, low), (a + 1, low - 1), (a, top + 1)])
+    floor: Line = [(60, 300), (460, 302), (459, 340), (61, 338), (60, 300)]
+    assert kinds(read([*bricks, floor], 3.2)) == ["rectangle"] * 9
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_a_foot_under_a_plank_stands_on_the_ground_s_line(pen: float) -> None:
+    ground: Line = [(20, 330), (500, 332), (499, 380), (21, 378), (20, 330)]
+    foot: Line = [(260, 176), (345, 332), (175, 328), (260, 176)]
+    plank: Line = [(60, 150), (470, 230), (465, 258), (55, 178), (60, 150)]
+    scene = read([ground, foot, plank, circle(259, 206, 9)], pen)
+    assert kinds(scene) == ["3 sides", "rectangle", "rectangle"]
+    assert len(scene.joints) == 1
