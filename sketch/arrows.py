@@ -43,7 +43,8 @@ def pointing(
 
     told: the gains of all that is proposed.  likely: which of it the ink makes likely.
     """
-    every = [(n, k) for n, p in enumerate(proposed) for k in p.arrows if told[n][k] > -ONE_ARROW]
+    by_ink = proposed[: len(page.pieces)]  # and not said by the caller
+    every = [(n, k) for n, p in enumerate(by_ink) for k in p.arrows if told[n][k] > -ONE_ARROW]
     if not every:
         return told, set()
     arrows = [proposed[n].candidates[k] for n, k in every]

@@ -156,7 +156,7 @@ class Recognizer:
         keys = list(self._strokes)
         pieces = [self._pieces[key] for key in keys]
         said = {tuple(i for s in strokes for i in pieces[s]): kind for strokes, kind in forced.items()}
-        proposed, told, chosen = self._explained(said)
+        proposed, told, chosen, elsewhere = self._explained(said)
         sketch = self.sketch
         number = {i: s for s, of in enumerate(pieces) for i in of}
         page = self._proposals.page
@@ -181,12 +181,18 @@ class Recognizer:
             for reading in readings:
                 if kind == "ignore" and reading.kind == "unread" and reading.strokes[0] in strokes:
                     reading.forced = kind
-        return Recognition(sketch, interpret(sketch, readings, scale, gravity, tidy), readings)
+        scene = interpret(sketch, readings, scale, gravity, tidy)
+        left = tuple(sorted({number[i] for i in elsewhere - read}))
+        if left:
+            arrow = Reading("unread", left, 0.0, np.empty((0, 2))).named
+            scene.notes.append(f"{arrow}: an arrow at a body, or of axes, or with two heads is no gravity")
+        return Recognition(sketch, scene, readings)
 
     def _explained(
         self, forced: Overrides
-    ) -> tuple[list[Proposed], list[list[float]], list[tuple[Fitted, float]]]:
-        """All that is proposed, with its gains, and what of it explains the page best, likewise."""
+    ) -> tuple[list[Proposed], list[list[float]], list[tuple[Fitted, float]], set[int]]:
+        """All that is proposed, with its gains; what of it explains the page best, likewise; and the pieces of arrows
+        that point at something else than gravity."""
         proposed = self._proposals.all()
         if forced:
             proposed = _with_forced(self._proposals.page, proposed, forced)
@@ -211,7 +217,7 @@ class Recognizer:
         chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in best]
         lost = _not_lent([c for c, _ in chosen])
         chosen = [t for t in chosen if t[0].lender not in lost]
-        return proposed, told, _whole_arrows(_one_a_place(chosen))
+        return proposed, told, _whole_arrows(_one_a_place(chosen)), elsewhere
 
     def _packed(self, proposed: list[Proposed], told: list[list[float]]) -> list[Pick]:
         """The best set of readings, each ink in one, given what all of them gain."""
