@@ -1,4 +1,4 @@
-"""Picture files → pixels: upright, BGR, 8 bits, on white where transparent."""
+"""Picture files → pixels: upright, BGR, 8 bits, on white where transparent, or on black under white ink."""
 
 from __future__ import annotations
 
@@ -170,5 +170,13 @@ def _to_bgr8(picture: NDArray[Any]) -> NDArray[np.uint8]:
         return np.asarray(cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR), np.uint8)
     if picture.shape[2] == 4:
         alpha = picture[..., 3:].astype(np.uint16)
-        return ((picture[..., :3] * alpha + 255 * (255 - alpha)) // 255).astype(np.uint8)
+        return ((picture[..., :3] * alpha + _ground(picture) * (255 - alpha)) // 255).astype(np.uint8)
     return np.ascontiguousarray(picture[..., :3], np.uint8)
+
+
+def _ground(picture: NDArray[Any]) -> int:
+    """What a BGRA picture is laid on: white, but black where nearly all that is to be seen is paler than grey."""
+    inked = picture[picture[..., 3] > 127]
+    if not len(inked) or 2 * len(inked) > picture.shape[0] * picture.shape[1]:
+        return 255
+    return 0 if inked[:, :3].min(axis=1).mean() > 127 else 255
