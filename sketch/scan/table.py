@@ -35,6 +35,10 @@ BULKY = 0.85  # of its convex hull that a sheet covers, though fingers hold it
 FOUR_SIDED = 0.95  # of its convex hull, and of the quadrilateral around it, that a sheet covers
 SIDES = 3  # of a sheet that are seen, to tell it from a part of a sheet in a shadow
 BEYOND = 4  # [pixels] from its edge that a table's light is taken
+SAME = 4  # of 255: colours of a canvas differ by no more,
+INKY = 0.3  # of the most that any differ: those of ink differ by more
+TOOLS = 0.03  # of a picture that an app's tools take at least
+WHOLLY = 0.985  # of its bounding rectangle that a canvas fills
 REGIONS = 6  # that are looked at, the largest,
 PARTS = 4  # so many of them at once
 
@@ -107,6 +111,9 @@ def _framed(colours: Image) -> list[NDArray[np.bool_]] | None:
     height, width = colours.shape[:2]
     if min(height, width) < 8 * EDGES:
         return None
+    canvas = _canvas(colours)
+    if canvas is not None:
+        return [canvas]
     half = cv2.resize(colours, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
     light = closed(cv2.cvtColor(half, cv2.COLOR_BGR2GRAY), FINGER)
     square = np.ones((5, 5), np.uint8)
@@ -146,6 +153,33 @@ def _framed(colours: Image) -> list[NDArray[np.bool_]] | None:
         ]
         return [part > 0 for part in (whole, *parts)]
     return None
+
+
+def _canvas(colours: Image) -> NDArray[np.bool_] | None:
+    """The canvas of an app: a rectangle of one flat colour among tools of other colours, or behind thin pale lines.
+
+    Ink on it differs clearly from the canvas, and tools hardly do.
+    """
+    import cv2
+
+    some = colours[::FEWER, ::FEWER]
+    canvas = np.array([median(some[..., channel]) for channel in range(3)]).astype(np.uint8)
+    if 2 * np.count_nonzero((some == canvas).all(axis=2)) < some.shape[0] * some.shape[1]:
+        return None  # a colour that most pixels have is the median of each channel
+    off = cv2.absdiff(colours, np.broadcast_to(canvas, colours.shape)).max(axis=2)
+    bare = off <= SAME
+    inked = cv2.dilate((off > INKY * off.max()).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
+    if bare.all() or off.max() <= SAME:
+        return None
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(
+        (bare | inked).astype(np.uint8), connectivity=4
+    )
+    largest = 1 + int(stats[1:, cv2.CC_STAT_AREA].argmax())
+    _, _, wide, high, _ = stats[largest].tolist()
+    region = ~_outside(labels == largest)
+    if count < 3 or wide * high > (1 - TOOLS) * bare.size or 2 * wide * high < bare.size:
+        return None
+    return region if np.count_nonzero(region) > WHOLLY * wide * high else None
 
 
 def _around(labels: NDArray[Any], regions: tuple[int, ...]) -> NDArray[Any]:
