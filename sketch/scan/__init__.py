@@ -37,5 +37,7 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
         notes.append(f"left out {traced.specks} specks on the paper")
     if traced.faint:
         notes.append(f"left out {traced.faint} marks that are far fainter than the pen's")
+    if traced.margins:
+        notes.append("left out what is printed from edge to edge of the sheet, or a crease")
     strokes = [Stroke(points) for points in traced.strokes]
     return Sketch(strokes, float(width), float(height), None, picture, notes)

@@ -33,6 +33,7 @@ DARK_BOARD = 110  # of 255
 COLOURED = 1.25  # times the light in its darkest channel that paper has in its brightest
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
+NOISELESS = 1.0  # of 255: what is seen by a camera has more noise
 GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
@@ -201,11 +202,11 @@ def _noise(darkness: Image, paper: Image | None, step: int) -> float:
     histogram = np.asarray(cv2.calcHist([some], [0], mask, [256], [0, 256])).ravel()
     # light is the brightest around, so that bare paper is darker by as much as it is uneven
     share = np.cumsum(histogram)
-    return max(float(np.searchsorted(share, 0.6 * share[-1])) / 2, 1.0)
+    return max(float(np.searchsorted(share, 0.6 * share[-1])) / 2, NOISELESS)
 
 
-def ink_mask(page: Page, reach: int) -> Image:
-    """The pixels that are ink, 1, shape (h, w).
+def ink_mask(page: Page, reach: int) -> tuple[Image, int]:
+    """The pixels that are ink, 1, shape (h, w), without printed lines; and how many of these are no ruling.
 
     A pixel of ink is at least half as dark as the darkest within `reach` pixels, which finds a line's edges
     however dark it is, or nearly as dark as full ink.  Of the pieces that those make, the ones count that are about
@@ -227,20 +228,23 @@ def ink_mask(page: Page, reach: int) -> Image:
     if not notable.any():
         notable = found.span >= 0
     if not len(notable):
-        return np.zeros_like(mask)
+        return np.zeros_like(mask), 0
     full = found.strength[notable].max()
     mask |= (crisp > np.uint8(max(floor, 0.75 * full))).view(np.uint8)
     # beside darker ink a thin line is less than half as dark as the darkest around, as the blurred edge of that ink
     # is; but from a line darkness falls to both sides, and along an edge to one
     link(crests(dark, mask, max(floor, FAINT * full), reach, CREST, BESIDE), LEAST_LINK, mask)
     found = _measure(mask, page)
-    if _may_be_ruled(found, page) and drop_ruling(mask, dark, page.edge):
+    photographed, ruled, margins = page.noise > NOISELESS, False, 0
+    if _may_be_ruled(found, page):
+        ruled, margins = drop_ruling(mask, dark, page.edge, photographed)
+    if ruled or margins:
         found = _measure(mask, page)
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     held = found.at_edge & (found.span < FINGER_MARK * size)
     faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
     keep = (found.strength >= faintest) & (found.span >= 2 * reach) & ~held
-    return found.without(mask, ~keep)
+    return found.without(mask, ~keep), margins
 
 
 def _may_be_ruled(found: _Pieces, page: Page) -> bool:

@@ -31,32 +31,31 @@ TREMOR = 25  # [pixels] over as many, in which a hand's is more
 DARKER = 1.5  # than the printed line: ink on it
 
 
-def drop_ruling(mask: Image, darkness: Image, edge: Image | None) -> bool:
-    """Erase ruling, squares and margins from a mask of ink, in place; returns whether there were any.
+def drop_ruling(mask: Image, darkness: Image, edge: Image | None, photographed: bool) -> tuple[bool, int]:
+    """Erase ruling, squares and margins from a mask of ink, in place.
 
     Ink that crosses a printed line stays, and so does ink on it that is clearly darker.  edge: not 0 off the sheet and
-    near its edge, or None where the sheet fills the picture.
+    near its edge, or None where the sheet fills the picture.  photographed: whether a camera or scanner saw it, so that
+    no straight line is a tool's.  Returns whether there was ruling, and how many other lines from edge to edge.
     """
-    across = _drop_printed(mask, darkness, edge)
+    ruled, margins = _drop_printed(mask, darkness, edge, photographed)
     upright, dark = np.ascontiguousarray(mask.T), np.ascontiguousarray(darkness.T)
-    if _drop_printed(upright, dark, None if edge is None else edge.T):
+    upright_ruled, more = _drop_printed(upright, dark, None if edge is None else edge.T, photographed)
+    if upright_ruled or more:
         mask[...] = upright.T
-        return True
-    return across
+    return ruled or upright_ruled, margins + more
 
 
-def _drop_printed(mask: Image, darkness: Image, edge: Image | None) -> bool:
-    """Erase what is printed from left to right."""
+def _drop_printed(mask: Image, darkness: Image, edge: Image | None, photographed: bool) -> tuple[bool, int]:
+    """Erase what is printed from left to right: as in drop_ruling."""
     lines, thick = _long_lines(mask)
-    ruled = len(lines) >= FEWEST and _drop_family(lines, thick, mask, darkness)
-    single = [
-        line
-        for rough in lines
-        if (line := _refined(rough, mask, thick)) is not None and _is_across(line, mask, edge, thick)
-    ]
-    for line in single:
-        _erase([_belt(line, mask, darkness, thick)], mask)
-    return ruled or bool(single)
+    ruled, margins = len(lines) >= FEWEST and _drop_family(lines, thick, mask, darkness), 0
+    for rough in lines if photographed else ():
+        line = _refined(rough, mask, thick)
+        if line is not None and _is_across(line, mask, edge, thick):
+            _erase([_belt(line, mask, darkness, thick)], mask)
+            margins += not ruled
+    return ruled, margins
 
 
 def _drop_family(lines: list[Line], thick: float, mask: Image, darkness: Image) -> bool:

@@ -61,6 +61,7 @@ class Traced:
         pen: width of the pen [pixels of the stages' pictures].
         specks: how many pieces were too small to be anything.
         faint: how many marks were fainter than anything drawn.
+        margins: how many straight lines led from edge to edge of the sheet.
         problem: why nothing was read, if there was something.
     """
 
@@ -73,6 +74,7 @@ class Traced:
     pen: float = 0.0
     specks: int = 0
     faint: int = 0
+    margins: int = 0
     problem: str = ""
 
 
@@ -120,11 +122,11 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
     if min(work.shape[:2]) < LEAST_SIDE:
         return Traced()
     page = read_page(work)
-    mask = ink_mask(page, NEARBY)
+    mask, margins = ink_mask(page, NEARBY)
     skeleton, size = thin(mask)
     distance = distances(mask)
     pen = _pen_width(mask, skeleton, distance) if size else 0.0
-    return Traced([], scale, page, mask, skeleton, distance, pen)
+    return Traced([], scale, page, mask, skeleton, distance, pen, margins=margins)
 
 
 def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any]) -> float:

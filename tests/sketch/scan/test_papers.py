@@ -185,19 +185,21 @@ def test_a_margin_is_printed_though_ink_crosses_it(upright: bool) -> None:
     page = np.full((HEIGHT, WIDTH, 3), 240, np.uint8)
     ends = ((150, 0), (156, HEIGHT)) if upright else ((0, 348), (WIDTH, 341))
     cv2.line(page, *ends, (80, 80, 215), 2, cv2.LINE_AA)
-    assert_all(read_picture(encoded(drawn(ink(), paper=page, noise=3))))
+    sketch = read_picture(encoded(drawn(ink(), paper=page, noise=3)))
+    assert_all(sketch)
+    assert any("from edge to edge" in note for note in sketch.notes)
 
 
-@pytest.mark.parametrize("kind", ["grey", "16 bits", "16 bits grey", "transparent"])
+@pytest.mark.parametrize("kind", ["grey", "16 bits", "16 bits grey", "transparent", "white and transparent"])
 def test_kinds_of_pixels(kind: str) -> None:
     picture: np.ndarray = PAPERS["noise"]
     if "grey" in kind:
         picture = picture[..., 1]
     if "16" in kind:
         picture = picture.astype(np.uint16) * 257
-    if kind == "transparent":
+    if "transparent" in kind:
         alpha = np.round(255 * ink()).astype(np.uint8)
-        picture = np.dstack([np.zeros((HEIGHT, WIDTH, 3), np.uint8), alpha])
+        picture = np.dstack([np.full((HEIGHT, WIDTH, 3), 255 * ("white" in kind), np.uint8), alpha])
     assert_all(read_picture(encoded(picture)))
 
 
@@ -253,6 +255,29 @@ def test_the_tools_of_an_app_are_not_drawn(dark: bool) -> None:
     if dark:
         picture = (255 - 0.88 * picture).astype(np.uint8)
     assert_all_at(picture, 0, 90)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_panels_around_a_canvas_are_not_drawn(dark: bool) -> None:
+    """They are hardly darker than it, or as bright behind a thin line."""
+    canvas = drawn(ink(), paper=(255, 255, 255), pen=(0, 0, 0))
+    side = np.full((HEIGHT, 70, 3), 248, np.uint8)
+    foot = np.full((60, WIDTH + 70, 3), 255, np.uint8)
+    side[:, -1] = foot[0] = 210
+    for k in range(5):
+        cv2.circle(side, (34, 40 + 60 * k), 16, (40 * k, 200 - 40 * k, 220), cv2.FILLED, cv2.LINE_AA)
+        cv2.rectangle(foot, (60 + 100 * k, 16), (90 + 100 * k, 46), (60, 60, 60), 2, cv2.LINE_AA)
+    picture = np.vstack([np.hstack([side, canvas]), foot])
+    if dark:
+        picture = (255 - 0.88 * picture).astype(np.uint8)
+    assert_all_at(picture, 70, 0)
+
+
+def test_a_floor_across_a_whole_canvas_is_drawn() -> None:
+    canvas = drawn(ink(), paper=(255, 255, 255), pen=(0, 0, 0))
+    cv2.line(canvas, (4, 440), (WIDTH - 4, 446), (0, 0, 0), 4, cv2.LINE_AA)
+    cv2.circle(canvas, (360, 500), 30, (0, 0, 0), 4, cv2.LINE_AA)
+    assert len(read_picture(encoded(canvas)).strokes) == 6
 
 
 def error_diffused(grey: np.ndarray) -> np.ndarray:
