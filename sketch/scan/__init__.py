@@ -35,9 +35,6 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
         notes.append("the picture's file is damaged: what could be decoded was read")
     if traced.specks:
         notes.append(f"left out {traced.specks} specks on the paper")
-    if traced.faint:
-        notes.append(f"left out {traced.faint} marks that are far fainter than the pen's")
-    if traced.margins:
-        notes.append("left out what is printed from edge to edge of the sheet, or a crease")
+    notes += traced.left_out
     strokes = [Stroke(points) for points in traced.strokes]
     return Sketch(strokes, float(width), float(height), None, picture, notes)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import crests, crisp_ink, darkness, distances, link, pieces
+from sketch.scan.punched import punched
 from sketch.scan.quantiles import median, percentile
 from sketch.scan.ruling import FEWEST, drop_ruling
 from sketch.scan.table import TABLE, closed, darkest_channel, find_sheet
@@ -33,6 +34,8 @@ DARK_BOARD = 110  # of 255
 COLOURED = 1.25  # times the light in its darkest channel that paper has in its brightest
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
 DIMMEST = 24  # of 255: light below this shows nothing but noise
+SOLID = 0.6  # of its box: what a disc covers at least, and no outline
+HOLE = 0.012  # of the picture's size: a hole punched into the sheet has more from corner to corner of its box
 NOISELESS = 1.0  # of 255: what is seen by a camera has more noise
 GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
@@ -205,8 +208,8 @@ def _noise(darkness: Image, paper: Image | None, step: int) -> float:
     return max(float(np.searchsorted(share, 0.6 * share[-1])) / 2, NOISELESS)
 
 
-def ink_mask(page: Page, reach: int) -> tuple[Image, int]:
-    """The pixels that are ink, 1, shape (h, w), without printed lines; and how many of these are no ruling.
+def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
+    """The pixels that are ink, 1, shape (h, w), and notes of what is as dark and was not drawn.
 
     A pixel of ink is at least half as dark as the darkest within `reach` pixels, which finds a line's edges
     however dark it is, or nearly as dark as full ink.  Of the pieces that those make, the ones count that are about
@@ -228,7 +231,7 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, int]:
     if not notable.any():
         notable = found.span >= 0
     if not len(notable):
-        return np.zeros_like(mask), 0
+        return np.zeros_like(mask), []
     full = found.strength[notable].max()
     mask |= (crisp > np.uint8(max(floor, 0.75 * full))).view(np.uint8)
     # beside darker ink a thin line is less than half as dark as the darkest around, as the blurred edge of that ink
@@ -241,10 +244,19 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, int]:
     if ruled or margins:
         found = _measure(mask, page)
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
+    left_out = ["left out what is printed from edge to edge of the sheet, or a crease"] if margins else []
+    solid = np.flatnonzero((found.area > SOLID * found.extent.prod(axis=1)) & (found.span > HOLE * size))
+    if photographed and len(solid) > 1:
+        ends = np.cumsum(found.area)
+        holes = solid[
+            punched(mask, page.edge, [found.pixels[ends[k] - found.area[k] : ends[k]] for k in solid])
+        ]
+        found.strength[holes] = 0
+        left_out += [f"left out {len(holes)} holes along an edge of the sheet"] if len(holes) else []
     held = found.at_edge & (found.span < FINGER_MARK * size)
     faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
     keep = (found.strength >= faintest) & (found.span >= 2 * reach) & ~held
-    return found.without(mask, ~keep), margins
+    return found.without(mask, ~keep), left_out
 
 
 def _may_be_ruled(found: _Pieces, page: Page) -> bool:

@@ -60,8 +60,7 @@ class Traced:
             paper.  All None where the picture is too small to show anything.
         pen: width of the pen [pixels of the stages' pictures].
         specks: how many pieces were too small to be anything.
-        faint: how many marks were fainter than anything drawn.
-        margins: how many straight lines led from edge to edge of the sheet.
+        left_out: notes of what is on the paper and was not drawn.
         problem: why nothing was read, if there was something.
     """
 
@@ -73,8 +72,7 @@ class Traced:
     distance: NDArray[Any] | None = None
     pen: float = 0.0
     specks: int = 0
-    faint: int = 0
-    margins: int = 0
+    left_out: list[str] = field(default_factory=list)
     problem: str = ""
 
 
@@ -122,11 +120,11 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
     if min(work.shape[:2]) < LEAST_SIDE:
         return Traced()
     page = read_page(work)
-    mask, margins = ink_mask(page, NEARBY)
+    mask, left_out = ink_mask(page, NEARBY)
     skeleton, size = thin(mask)
     distance = distances(mask)
     pen = _pen_width(mask, skeleton, distance) if size else 0.0
-    return Traced([], scale, page, mask, skeleton, distance, pen, margins=margins)
+    return Traced([], scale, page, mask, skeleton, distance, pen, left_out=left_out)
 
 
 def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any]) -> float:
@@ -161,8 +159,8 @@ def _strokes(seen: Traced) -> list[Points]:
         size = cv2.countNonZero(skeleton)
     seen.skeleton, seen.distance = skeleton, distance
     chains = trace(skeleton, size)
-    seen.faint = drop_faint_marks(mask, page.darkness, chains, distance, pen)
-    if seen.faint:
+    if faint := drop_faint_marks(mask, page.darkness, chains, distance, pen):
+        seen.left_out.append(f"left out {faint} marks that are far fainter than the pen's")
         seen.distance = distance = distances(mask)
         drop_specks(mask, distance, pen)
         seen.skeleton, size = thin(mask)

@@ -190,6 +190,23 @@ def test_a_margin_is_printed_though_ink_crosses_it(upright: bool) -> None:
     assert any("from edge to edge" in note for note in sketch.notes)
 
 
+def punched(floor: bool) -> np.ndarray:
+    """Two dark discs near the lower edge, a floor drawn under them or not."""
+    picture = drawn(ink(), noise=3)
+    for x in (200, 520):
+        cv2.circle(picture, (x, HEIGHT - 24), 10, (60, 75, 95), cv2.FILLED, cv2.LINE_AA)
+    if floor:
+        cv2.line(picture, (100, HEIGHT - 10), (620, HEIGHT - 11), (40, 40, 40), 4, cv2.LINE_AA)
+    return picture
+
+
+def test_holes_along_an_edge_are_not_drawn_but_balls_on_a_floor_are() -> None:
+    sketch = read_picture(encoded(punched(floor=False)))
+    assert_all(sketch)
+    assert sketch.notes == ["left out 2 holes along an edge of the sheet"]
+    assert len(read_picture(encoded(punched(floor=True))).strokes) == 7
+
+
 @pytest.mark.parametrize("kind", ["grey", "16 bits", "16 bits grey", "transparent", "white and transparent"])
 def test_kinds_of_pixels(kind: str) -> None:
     picture: np.ndarray = PAPERS["noise"]

@@ -1,0 +1,57 @@
+"""Holes that were punched into a sheet for a binder: alike and round, along an edge of it, with nothing beyond."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["punched"]
+
+Image = NDArray[Any]  # uint8
+
+ROUND = 0.12  # of its width: what a hole's height may differ, and of a disc's area, its own
+ALIKE = 0.15  # of its width: what that of another may differ,
+IN_LINE = 0.1  # of how far they are apart: what one's distance to the edge may differ from another's
+RIM = 0.07  # of the picture's size: they are nearer to the edge
+
+
+def punched(mask: Image, edge: Image | None, pixels: list[NDArray[np.int32]]) -> list[int]:
+    """Which pieces of ink are such holes.
+
+    mask: of the ink.  edge: not 0 off the sheet and near its edge, or None where the sheet fills the picture.
+    pixels: of each piece, as indices into the mask.
+    """
+    rim = RIM * (mask.shape[0] * mask.shape[1]) ** 0.5
+    discs = []
+    for k, piece in enumerate(pixels):
+        y, x = np.divmod(piece, mask.shape[1])
+        (left, right), (top, bottom) = ((int(v.min()), int(v.max())) for v in (x, y))
+        wide, high = right - left + 1, bottom - top + 1
+        full = np.pi / 4 * wide * high
+        if abs(wide - high) > ROUND * wide or abs(len(piece) - full) > ROUND * full:
+            continue
+        x0, y0 = (left + right) // 2, (top + bottom) // 2
+        ways = (
+            (slice(y0, y0 + 1), slice(left - 1, None, -1)) if left else None,
+            (slice(y0, y0 + 1), slice(right + 1, None)),
+            (slice(top - 1, None, -1), slice(x0, x0 + 1)) if top else None,
+            (slice(bottom + 1, None), slice(x0, x0 + 1)),
+        )
+        for side, way in enumerate(ways):
+            if way is None:
+                continue
+            beyond = mask[way].ravel()
+            free = len(beyond) if edge is None else int(np.argmax(np.append(edge[way].ravel() > 0, True)))
+            if free < rim and not beyond[:free].any():
+                discs.append((side, k, wide, free, y0 if side < 2 else x0))
+    return sorted(
+        {
+            k
+            for side, k, wide, free, at in discs
+            for other, n, width, clear, place in discs
+            if n != k and other == side and abs(width - wide) < ALIKE * wide
+            if abs(clear - free) < IN_LINE * abs(place - at)
+        }
+    )
