@@ -19,6 +19,7 @@ Image = NDArray[Any]  # uint8
 
 TABLE = 0.5  # what is not as bright as this share of the paper is not paper
 FEWER = 3  # of these a side one is enough for a mean or a median
+SPARSE = 8  # likewise, to tell a colour that most have
 COARSER = 5  # of these a side make one where light is smoothed
 FINGER = 0.015  # of the picture's size, to either side: what lies on the paper and is no wider is left out
 TINGE = 0.75  # of the paper's whiteness: what is more coloured is not paper in a shadow
@@ -162,7 +163,7 @@ def _canvas(colours: Image) -> NDArray[np.bool_] | None:
     """
     import cv2
 
-    some = colours[::FEWER, ::FEWER]
+    some = colours[::SPARSE, ::SPARSE]
     canvas = np.array([median(some[..., channel]) for channel in range(3)]).astype(np.uint8)
     if 2 * np.count_nonzero((some == canvas).all(axis=2)) < some.shape[0] * some.shape[1]:
         return None  # a colour that most pixels have is the median of each channel
