@@ -28,7 +28,7 @@ from sketch.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted, misfit_of
 from sketch.search import Part, part
 
-__all__ = ["Box", "Proposals", "Proposed", "Row", "proposing"]
+__all__ = ["HOPELESS", "Box", "Proposals", "Proposed", "Row", "proposing"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
 CLOSED = 0.04  # of its ink, what is missing at most of an outline that needs no other ink

@@ -120,13 +120,13 @@ class Prices:
             max(said / sum(self._page.pieces[i].observations for i in pieces), 1.0),
         )
 
-    def gain(self, c: Fitted, taken: Taken) -> float:
-        """Nats that a reading saves against saying the ink that it takes freely."""
+    def gain(self, c: Fitted, taken: Taken, least: float) -> float:
+        """Nats that a reading saves against saying the ink that it takes freely; no more than `least` if less."""
         said = _said(c)
         # what is off its ink is said as finely as that ink is said freely, in more strokes maybe, never less finely
         gain = taken.freely - said - (c.cost - said) * taken.finer
         # the strokes of a cross, and of an arrow in one stroke, are judged as a whole
-        if gain <= 0 or c.kind == "cross" or (c.kind == "arrow" and len(c.pieces) == 1):
+        if gain <= least or c.kind == "cross" or (c.kind == "arrow" and len(c.pieces) == 1):
             return gain
         return gain - self._coarse(c, taken)
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sketch.arrows import ONE_ARROW
 from sketch.context import Context
 from sketch.kernel import depth
-from sketch.proposals import Proposals, proposing
+from sketch.proposals import HOPELESS, Proposals, proposing
 from sketch.scan.prices import Prices
 from sketch.scan.ways import Way
 from sketch.scoring import Fitted
@@ -58,9 +58,11 @@ def settle(
     own: list[tuple[int, ...]] = []  # the stretches of ink that no other may have,
     candidates: list[Fitted] = []  # and, as its pieces, those that are most of its ink
     gains: list[float] = []
+    best_of: dict[tuple[int, ...], float] = {}  # of the same pieces: what gains much less is not it
     for c in (c for proposed in proposals.all() for c in proposed.candidates):
-        taken = prices.of(c.pieces)
-        if taken is not None and (gain := prices.gain(c, taken)) > 0:
+        taken, least = prices.of(c.pieces), best_of.get(c.pieces, HOPELESS) - HOPELESS
+        if taken is not None and (gain := prices.gain(c, taken, least)) > least:
+            best_of[c.pieces] = max(gain, best_of.get(c.pieces, HOPELESS))
             groups.append(c.pieces)
             own.append(taken.own)
             candidates.append(replace(c, pieces=taken.main))
