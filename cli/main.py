@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import _thread
 import importlib
 import os
 import re
 import signal
 import sys
+import time
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
@@ -115,13 +117,33 @@ def _join_negative_vectors(argv: Sequence[str]) -> list[str]:
 
 
 def _terminate_as_interrupt() -> Callable[[], object]:
-    """Let SIGTERM unwind like Ctrl-C, so that nothing half-written stays behind; returns how to undo it."""
+    """Let SIGTERM unwind like Ctrl-C, so that nothing half-written stays behind; returns how to undo it.
+
+    An interrupt that comes within a callback of the garbage collector's or the import's, where Python can only print
+    and forget it, comes again: one Ctrl-C of a hundred went lost while the encoder's modules were loaded.
+    """
 
     def interrupt(number: int, frame: object) -> NoReturn:
         raise KeyboardInterrupt
+
+    def once_more() -> None:
+        time.sleep(0.01)
+        _thread.interrupt_main(signal.SIGTERM)
+
+    def unraisable(what: sys.UnraisableHookArgs) -> None:
+        if what.exc_type is KeyboardInterrupt:
+            _thread.start_new_thread(once_more, ())
+        else:
+            forgotten(what)
 
     try:
         before = signal.signal(signal.SIGTERM, interrupt)
     except ValueError:  # not in the main thread, which alone is told
         return lambda: None
-    return lambda: signal.signal(signal.SIGTERM, before)
+    forgotten, sys.unraisablehook = sys.unraisablehook, unraisable
+
+    def restore() -> None:
+        signal.signal(signal.SIGTERM, before)
+        sys.unraisablehook = forgotten
+
+    return restore

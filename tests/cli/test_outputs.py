@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,31 @@ def test_an_interrupted_run_leaves_nothing(scene_file: Path, number: signal.Sign
     assert process.returncode in (130, -signal.SIGINT)
     assert stderr.splitlines()[-1] == "error: interrupted; nothing was left half-written [interrupted]"
     assert os.listdir(folder) == ["scene.json"]
+
+
+def test_an_interrupt_within_a_callback_is_not_lost(
+    scene_file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Thing:
+        pass
+
+    def interrupted(_: object) -> None:
+        raise KeyboardInterrupt
+
+    def run(_: object) -> int:
+        thing = Thing()
+        watch = weakref.ref(thing, interrupted)
+        del thing
+        assert watch() is None
+        for _ in range(1000):
+            time.sleep(0.01)
+        return 0
+
+    monkeypatch.setattr("cli.commands.simulate.run", run)
+    hook = sys.unraisablehook
+    assert main(["simulate", str(scene_file)]) == 130
+    assert capsys.readouterr().err.splitlines()[-1].endswith("[interrupted]")
+    assert sys.unraisablehook is hook
 
 
 def test_a_closed_pipe_is_no_traceback(scene_file: Path) -> None:
