@@ -245,7 +245,8 @@ def _near(circle: Drawn, at: Array, reach: float, bodies: Bodies) -> list[tuple[
 def _axle(wheel: Drawn, circle: Drawn, at: Array, radius: float, bodies: Bodies) -> list[Drawn]:
     """What a circle at the centre of a wheel joins it to: the body that the wheel overlaps the most, if by much.
 
-    A wheel that is pinned to the background stands free, or touches.
+    A wheel that is pinned to the background stands free, or touches; and a rod that is pinned to it elsewhere is none
+    that it turns on.
     """
     r = wheel.size / math.sqrt(math.pi)
     if wheel.reading.kind != "circle" or math.dist(at, wheel.outline.mean(axis=0)) > JOINS * r:
@@ -259,7 +260,20 @@ def _axle(wheel: Drawn, circle: Drawn, at: Array, radius: float, bodies: Bodies)
         and r < 2 * d.size
         and radius < 2 * JOINS * d.size
     ]
-    return [d for depth, d in sorted(others, key=lambda t: t[0]) if depth < CUT * r]
+    by_depth = sorted(others, key=lambda t: t[0])
+    return [d for depth, d in by_depth if depth < CUT * r and not _joined(wheel, d, circle, bodies)]
+
+
+def _joined(wheel: Drawn, other: Drawn, circle: Drawn, bodies: Bodies) -> bool:
+    """Whether another ring no larger than twice a circle's size lies over both a wheel and another body."""
+    r = wheel.size / math.sqrt(math.pi)
+    rings = (d for d in bodies.near(wheel.outline.mean(axis=0), r) if d.reading.kind in ("circle", "pivot"))
+    return any(
+        wheel.depth(at) < 0 and other.depth(at) < 0
+        for ring in rings
+        if ring not in (circle, wheel) and ring.size < 2 * circle.size
+        for at in (ring.outline.mean(axis=0),)
+    )
 
 
 def _off_ink(sketch: Sketch, d: Drawn, at: Array) -> float:

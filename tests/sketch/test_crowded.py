@@ -149,3 +149,13 @@ def test_a_hasty_ring_at_the_middle_of_a_wheel_is_its_axle(seed: int) -> None:
     ring = [(-4, 5), (6, 5), (12, -1), (9, -8), (2, -10), (-6, -5), (-6, 1), (-1, 6), (8, 7)]
     found = read(wheel, line([(400 + x, 300 + y) for x, y in ring], NEAT, rng))
     assert kinds(found) == ["circle", "pivot"]
+
+
+@seeds
+def test_a_rod_that_is_pinned_to_a_wheel_is_not_what_that_turns_on(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    wheel = circle((400, 360), 150, NEAT, rng)
+    rod = outline(box(600, 360, 260, 30), NEAT, rng)
+    axle, crank = circle((400, 360), 9, NEAT, rng), circle((485, 360), 8, NEAT, rng)
+    joints = read(wheel, rod, axle, crank).scene.joints
+    assert sorted((j.bodies for j in joints), key=str) == [("b1", "b2"), ("b1", None)]
