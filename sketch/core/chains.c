@@ -10,7 +10,8 @@ enum {
     BREADTH = 80, /* ways of so many parts that are gone on with, the tightest: in shading every end has many near it */
     MOST_STEPS = 1 + CHOICES + CHOICES * CHOICES + 3 * BREADTH, /* ways from one piece, at most */
     MOST_SIDES = 3, /* of those that lack a side of another body */
-    MOST_OPEN = 32, /* of such ways from one piece */
+    MOST_OPEN = 24, /* of such ways from one piece: where there are more, each lies near some end by chance */
+    TIGHTEST = 5, /* of them that are told */
     UNKNOWN = -1
 };
 
@@ -230,8 +231,15 @@ static void go_on(Search *s, const Chain *way) {
     if (s->asked < MOST_STEPS) s->ends[s->asked++] = last;
     if (s->count[last] == UNKNOWN) look_around(s, last);
     if (way->parts > 1 && start / 2 < last / 2 && closing > TIGHT * way->ink && BENT * closing < way->ink &&
-        may_lack(s, way, start, closing) && may_lack(s, way, last, closing) && s->found < MOST_OPEN)
-        s->best[s->found++] = *way;
+        may_lack(s, way, start, closing) && may_lack(s, way, last, closing)) {
+        int at = s->found < TIGHTEST ? s->found : TIGHTEST - 1;
+        if (at == s->found || looseness(way) < looseness(s->best + at)) {
+            for (; at > 0 && looseness(s->best + at - 1) > looseness(way); at--) s->best[at] = s->best[at - 1];
+            s->best[at] = *way;
+        }
+        s->found++;
+    }
+    if (s->found > MOST_OPEN) return;
     if (way->parts == MOST_SIDES) return;
     for (int c = 0; c < s->count[last]; c++) {
         int next = s->near[CHOICES * last + c];
@@ -248,7 +256,7 @@ static void go_on(Search *s, const Chain *way) {
 /* Ways of two pieces or more, of which `start` is at an end, and drawn before that at the other, that lack a side which may
  * be another body's.
  *
- * rows .. gap: as in Search.  Out: links (MOST_OPEN, MOST_PARTS) and parts of each; ends: those whose neighbours were asked
+ * rows .. gap: as in Search.  Out: links (TIGHTEST, MOST_PARTS) and parts of each; ends: those whose neighbours were asked
  * for, MOST_STEPS at most, asked: how many. Returns the number of ways. */
 INK_API int32_t ink_open_ways(int32_t rows, const double *at, const double *length, const uint8_t *loose,
                               const int32_t *rivals, const int32_t *from, int32_t *count, int32_t *near, double *gap,
@@ -260,10 +268,11 @@ INK_API int32_t ink_open_ways(int32_t rows, const double *at, const double *leng
         if (s.asked < MOST_STEPS) s.ends[s.asked++] = end;
         go_on(&s, &way);
     }
-    for (int w = 0; w < s.found; w++) {
+    int told = s.found > MOST_OPEN ? 0 : s.found < TIGHTEST ? s.found : TIGHTEST;
+    for (int w = 0; w < told; w++) {
         memcpy(links + MOST_PARTS * w, s.best[w].links, sizeof s.best[w].links);
         parts[w] = s.best[w].parts;
     }
     *asked = s.asked;
-    return s.found;
+    return told;
 }
