@@ -42,10 +42,10 @@ Point = tuple[float, float]
 Box = tuple[float, float, float, float]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
-COURSE, HEADS = 32, 4  # as in core/course.c and core/heads.c
+COURSE, HEADS, LIFT = 32, 4, 6  # as in core/course.c, core/heads.c and core/outline.h
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 5, *[_pointer] * 9)(
+_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, *[_pointer] * 10)(
     ("ink_closed", _lib)
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
@@ -105,7 +105,7 @@ class ClosedFit(NamedTuple):
         ellipse_cost: nats to say the ink, given it.
         circle: centre and radius [pixels].  circle_cost: nats to say the ink, given it.
         residual: mean squared distance of the best k-gon, for k = 0 .. SIDES.
-        cost: nats to say the ink, given that polygon.
+        cost: nats to say the ink, given that polygon.  lacks: nats for what of it nobody drew.
         corners: of those polygons [pixels], (SIDES + 1, SIDES, 2).
         rectangle: the nearest to the quadrilateral [pixels], (4, 2).  extra: what it adds to residual[4]; infinite
             for none.
@@ -123,6 +123,7 @@ class ClosedFit(NamedTuple):
     circle_cost: float
     residual: list[float]
     cost: list[float]
+    lacks: list[float]
     corners: Array
     rectangle: Array
     extra: float
@@ -166,7 +167,7 @@ class ArrowFit(NamedTuple):
 
 
 # of ink_closed's results, in order
-_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1), 9, SIDES + 1)
+_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1), 9, SIDES + 1)
 _OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
 
 
@@ -195,12 +196,18 @@ def joined(a: Strokes, b: Strokes) -> Strokes:
 
 
 def fit_closed(
-    parts: list[Array], least_axis: float, cap: float, observations: float, side: float, hopeless: float
+    parts: list[Array],
+    least_axis: float,
+    cap: float,
+    observations: float,
+    side: float,
+    hopeless: float,
+    undrawn: float,
 ) -> ClosedFit:
     """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
     ends = np.cumsum([len(p) for p in parts], dtype=np.int32)
-    out = np.empty(_OFFSETS[-1] + 2 * len(xy))
+    out = np.empty(_OFFSETS[-1] + 2 * len(xy) + LIFT * len(parts))
     at = address(out)
     _closed(
         address(xy),
@@ -211,9 +218,10 @@ def fit_closed(
         observations,
         side,
         hopeless,
+        undrawn,
         *[at + 8 * o for o in _OFFSETS],
     )
-    _, length, conic, residual, cost, corners, rectangle, turning, rest = _OFFSETS
+    _, length, conic, residual, cost, lacks, corners, rectangle, turning, rest = _OFFSETS
     scalars = out[:corners].tolist()
     return ClosedFit(
         mean=out[0:2],
@@ -225,7 +233,8 @@ def fit_closed(
         circle=(scalars[conic + 6], scalars[conic + 7], scalars[conic + 8]),
         circle_cost=scalars[conic + 9],
         residual=scalars[residual:cost],
-        cost=scalars[cost:],
+        cost=scalars[cost:lacks],
+        lacks=scalars[lacks:],
         corners=out[corners:rectangle].reshape(SIDES + 1, SIDES, 2),
         rectangle=out[rectangle + 1 : turning].reshape(4, 2).copy(),
         extra=float(out[rectangle]),

@@ -22,11 +22,14 @@ Array = NDArray[np.float64]
 
 MOST_SIDES = 12
 FEWEST, MOST = 5, 7  # sides of polygons that are nearly round, as in core/outline.c
-ROUND = 39.5  # nats that a round outline is rarer than its three parameters say
+ROUND = 31.0  # nats that a round outline is rarer than its three parameters say
 CORNER = 4.0  # nats to say a corner's coordinate, given those before: less than a free parameter
 USUAL = {3: 2.0, 4: 4.0}  # nats that triangles and quadrilaterals are commoner than other polygons
 IRREGULAR = 6.0  # nats that a quadrilateral is rarer of which no two sides are parallel,
 ALIKE = 0.1  # to within this [rad]
+ALSO = 10.0  # nats: likelihoods of polygons that take so much more are not told apart
+NEARLY = 1.5  # nats to say where a corner is, either way, that is nearly where a regular polygon has it:
+REGULAR = 0.06  # usually so much off [shares of the radius]
 BOX = 17.0  # nats to say a rectangle: five parameters, and that it is the commonest thing drawn
 UNROUND = 0.115  # usual log of a drawn circle's length over its width, either way: nobody's circles are round
 EVENLY = 0.4  # usual share of a round outline's turning that is at a polygon's corners, beyond what is there anyway;
@@ -34,6 +37,7 @@ TURNING = 0.12  # and how much either differs from that: all of a polygon's turn
 ELLIPSE = 7.5  # nats that an ellipse takes beyond a circle: with 1.6 times as long as wide it is either
 FREEFORM = 32.0  # nats that an outline of any course, a hill or a cloud, is rarer than a polygon,
 ARC = 9.0  # and nats to say each of the arcs that it goes in: a bow beside the corner
+WIDE = 0.25  # of its ink: where more is missing, nobody can say which course it took; as in core/sides.c
 COURSE = 32  # corners that it is drawn with
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.c
 SHARED = 10.0  # nats that an outline is rarer of which a side is another's
@@ -46,6 +50,9 @@ CAP = 0.3  # distances count up to this share of the radius: hooks and flourishe
 LEAST_AXIS = 0.002  # of the page: thinner outlines are judged as if they were this thick
 
 _SAID = [2 * k * CORNER - USUAL.get(k, 0.0) for k in range(MOST_SIDES + 1)]  # nats to say k corners
+_NEARLY_SAID = [
+    6 * CORNER + (2 * k - 6) * NEARLY for k in range(MOST_SIDES + 1)
+]  # if they are nearly regular
 _ANGLES = np.linspace(0, 2 * math.pi, 24, endpoint=False)
 _RING = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
 
@@ -103,9 +110,8 @@ def _read(
     besides: nats to say what else there is: ink of these pieces that does not, or a side that is not theirs.
     """
     pieces = page.pieces
-    fit = fit_closed(
-        parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * sum(pieces[i].unread for i in names)
-    )
+    free = sum(pieces[i].unread for i in names)
+    fit = fit_closed(parts, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 2 * free, GAP)
     gaps = GAP * count * fit.gap / fit.ink + besides
     (p, q), (r, s) = fit.back.tolist()
     scale, narrow = math.sqrt(abs(p * s - q * r)), min(math.hypot(p, r), math.hypot(q, s))
@@ -113,21 +119,28 @@ def _read(
     said = _SAID.copy()
     if math.isfinite(fit.cost[4]):
         said[4] += min(0.5 * (_unlike(fit.vertices(4)) / ALIKE) ** 2, IRREGULAR)
-    sides = min(range(3, MOST_SIDES + 1), key=lambda k: fit.cost[k] + said[k])
+    total = [sum(nats) for nats in zip(fit.cost, fit.lacks, said, strict=True)]
+    least = min(total[3:])
+    for k in range(FEWEST, MOST + 1):
+        clean = _NEARLY_SAID[k] - said[k]
+        if total[k] + clean < least + ALSO:
+            total[k] += min(clean + _irregular(fit, k), 0.0)
+    sides, second = sorted(range(3, MOST_SIDES + 1), key=total.__getitem__)[:2]
     evenly, straight = _turning(fit, sides)
     out = _round(fit, fitted, gaps + evenly)
     if math.isfinite(fit.cost[sides]):
-        cost = fit.cost[sides] + said[sides]
-        second = min((k for k in range(3, MOST_SIDES + 1) if k != sides), key=lambda k: fit.cost[k] + said[k])
-        ahead = second, fit.cost[second] + said[second] - cost
-        outline, rough = fit.vertices(sides), fit.cost[sides]
-        out.append(fitted("polygon", cost=cost + gaps + straight, outline=outline, rough=rough, next=ahead))
+        outline, rough, ahead = fit.vertices(sides), fit.cost[sides], (second, total[second] - total[sides])
+        cost = total[sides] + besides + straight
+        out.append(fitted("polygon", cost=cost, outline=outline, rough=rough, next=ahead))
     if math.isfinite(fit.extra):
         off = fit.residual[4]
-        cost = fit.cost[4] + misfit(off + fit.extra, count) - misfit(off, count) + BOX + gaps
+        unlike = misfit(off + fit.extra, count) - misfit(off, count)
+        cost = fit.cost[4] + unlike + BOX + fit.lacks[4] + besides
         out.append(fitted("rectangle", cost=cost, outline=fit.rectangle))
     least = min(f.cost for f in out)
-    if FREEFORM + gaps + 3 * ARC < least:  # else it is not said in fewer however well it fits
+    if (
+        fit.gap < WIDE * fit.ink and FREEFORM + gaps + 3 * ARC < least
+    ):  # else it is not said in fewer however well it fits
         arcs = range(3, MOST_SIDES + 1)
         bent = FREEFORM + gaps + min(misfit(fit.residual[k], count) + ARC * k for k in arcs)
         course = _course(parts) if bent < least else None
@@ -145,6 +158,24 @@ def _turning(fit: ClosedFit, sides: int) -> tuple[float, float]:
         return 0.0, 0.0
     turning = min(max(float(fit.turning[sides]), EVENLY), 1.0)
     return 0.5 * ((turning - EVENLY) / TURNING) ** 2, 0.5 * ((1 - turning) / TURNING) ** 2
+
+
+def _irregular(fit: ClosedFit, k: int) -> float:
+    """Nats to say how far a polygon's corners are off those of an affine image of a regular one.
+
+    Such an image is a + b w^j + c w^-j, with w the k-th root of one: what the corners' other discrete Fourier
+    coefficients hold is how far they are off it.
+    """
+    (p, q), (r, s) = fit.back.tolist()
+    det, mean = p * s - q * r, complex(*fit.mean.tolist())
+    corners = []
+    for x, y in fit.corners[k, :k].tolist():
+        x, y = x - mean.real, y - mean.imag
+        corners.append(complex(s * x - q * y, p * y - r * x) / det)
+    turns = [cmath.exp(2j * math.pi * j / k) for j in range(k)]
+    found = [sum(z * turns[j * f % k] for j, z in enumerate(corners)) for f in range(2, k - 1)]
+    off2 = math.fsum(abs(z) ** 2 for z in found) / k
+    return 0.5 * off2 / REGULAR**2
 
 
 def _unlike(corners: Array) -> float:

@@ -20,7 +20,7 @@ typedef struct {
     double sxx[2 * SAMPLES + 1], sxy[2 * SAMPLES + 1], syy[2 * SAMPLES + 1];
     double six[2 * SAMPLES + 1], siy[2 * SAMPLES + 1];   /* x and y times the index, */
     double siix[2 * SAMPLES + 1], siiy[2 * SAMPLES + 1]; /* and times its square: for the bow */
-    double cost[2][SAMPLES][SAMPLES + 1]; /* cost[w][i][m]: of samples i .. i+m-1 as one side, see Line */
+    double cost[SAMPLES][SAMPLES + 1]; /* cost[i][m]: of samples i .. i+m-1 as one side, see Line */
 } Runs;
 
 typedef struct {
@@ -29,9 +29,9 @@ typedef struct {
     double cost;         /* squared distances from the bowed line, and the price of the bow */
 } Line;
 
-/* Fill the sums, and the costs for each of `ways` stiffnesses, (tremor / usual bow)²: what a bow costs.
+/* Fill the sums, and the costs.  stiffness: (tremor / usual bow)², what a bow costs.
  * closed: whether runs pass the end; else the costs of those that do are left undefined. */
-void runs_prepare(Runs *r, int closed, int ways, const double *stiffness);
+void runs_prepare(Runs *r, int closed, double stiffness);
 
 /* The line of samples first .. first+count-1. Nobody draws a straight side straight: it may bow, at a price. */
 Line runs_line(const Runs *r, int first, int count, double stiffness);
@@ -39,11 +39,11 @@ Line runs_line(const Runs *r, int first, int count, double stiffness);
 /* The best splits of the samples, begun at one of them, into 1, 2, 3 .. runs: each from the one before. */
 typedef struct {
     const Runs *runs;
-    int way, start, n;
+    int start, n;
     double best[SIDES + 1][SAMPLES + 1]; /* best[k][j]: cost of the best k runs of the first j samples */
 } Split;
 
-void split_begin(Split *s, const Runs *r, int way, int start);
+void split_begin(Split *s, const Runs *r, int start);
 void split_further(Split *s, int k);                           /* from k - 1 runs to k */
 void split_bounds(const Split *s, int k, int cut[SIDES + 1]);  /* the k + 1 bounds of the best k runs */
 

@@ -177,13 +177,19 @@ static double turning(const Runs *r, const double *corners, int k) {
     return (sum / (2 * PI) - even) / (1 - even);
 }
 
-/* How far the pen was lifted between one sample and the next, summed from the first, twice around. */
-static void how_far_lifted(const Runs *r, double ink, double lacks[2 * SAMPLES]) {
-    lacks[0] = 0;
-    for (int i = 1; i < 2 * SAMPLES; i++) {
-        int a = (i - 1) % SAMPLES, b = i % SAMPLES;
-        lacks[i] = lacks[i - 1] + fmax(length(r->x[b] - r->x[a], r->y[b] - r->y[a]) - ink / SAMPLES, 0);
+/* Where the pen is lifted, behind each part. Returns what is missing of the outline at least. */
+static double find_lifts(const double *z, const int32_t *part_end, int parts, double ink, Lift *lifts) {
+    double done = 0, gaps = 0;
+    for (int p = 0, i = 0; p < parts; i = part_end[p++]) {
+        int last = part_end[p] - 1, next = p + 1 < parts ? part_end[p] : 0;
+        for (int j = i + 1; j <= last; j++) done += length(z[2 * j] - z[2 * j - 2], z[2 * j + 1] - z[2 * j - 1]);
+        double behind = done * SAMPLES / fmax(ink, 1e-300) - 0.5; /* sample k is (k + 0.5) / SAMPLES of the ink on */
+        lifts[p].next = next ? (int)fmin(ceil(behind), SAMPLES - 1) : 0;
+        memcpy(lifts[p].end, z + 2 * last, sizeof lifts[p].end);
+        memcpy(lifts[p].begin, z + 2 * next, sizeof lifts[p].begin);
+        gaps += lifts[p].gap = gap_after(z, part_end, parts, p);
     }
+    return gaps;
 }
 
 /* Fit the readings of a closed chain of ink.
@@ -193,16 +199,17 @@ static void how_far_lifted(const Runs *r, double ink, double lacks[2 * SAMPLES])
  * observations: how many independent ones the ink is worth.
  * side: nats to say one more side.
  * hopeless: a first split that costs more [nats] is not looked into further.
+ * undrawn: nats for each observation that an outline lacks.
  * cap: distances count up to this, in the frame.
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds;
  * residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed sides, flat
- * corners and short sides; vertices[k][SIDES][2] [pixels]; rectangle: what the nearest adds to residual[4], infinite for none,
+ * corners and short sides, and lacks[k]: nats for what of it nobody drew; vertices[k][SIDES][2] [pixels]; rectangle: what the nearest adds to residual[4], infinite for none,
  * and its corners (8) [pixels]; turned[k]: how much of the ink's turning is at the corners of the k-gon, for the best of those with
  * FEWEST to MOST sides. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
-                        double observations, double side, double hopeless, double *frame, double *length, double *round,
-                        double *residual, double *cost, double *vertices, double *rectangle, double *turned,
-                        double *scratch) {
+                        double observations, double side, double hopeless, double undrawn, double *frame,
+                        double *length, double *round, double *residual, double *cost, double *lacks, double *vertices,
+                        double *rectangle, double *turned, double *scratch) {
     int n = part_end[parts - 1];
     Frame f = normal_frame(xy, n, least_axis);
     memcpy(frame, f.mean, sizeof f.mean);
@@ -214,11 +221,11 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         z[2 * i] = f.to[0] * dx + f.to[1] * dy;
         z[2 * i + 1] = f.to[2] * dx + f.to[3] * dy;
     }
-    length[1] = 0;
-    for (int p = 0; p < parts; p++) length[1] += gap_after(z, part_end, parts, p);
     Runs r, longer;
     r.n = SAMPLES;
     length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
+    Lift *lifts = (Lift *)(scratch + 2 * n);
+    length[1] = find_lifts(z, part_end, parts, length[0], lifts);
     double factor[SAMPLES];
     own_scale(z, part_end, parts, length[0], factor);
     Ink ink = {.factor = factor,
@@ -226,9 +233,13 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
                .length = length[0],
                .observations = observations,
                .side = side,
-               .hopeless = hopeless};
-    how_far_lifted(&r, length[0], ink.lacks);
+               .hopeless = hopeless,
+               .lifts = lifts,
+               .lift_count = parts,
+               .gaps = length[1],
+               .undrawn = undrawn * observations / fmax(length[0], 1e-9)};
     fit_rounds(&r, &f, &ink, round);
+    ink.round = fmin(round[5], round[9]);
 
     Polygon found[SIDES + 1];
     double p = hypot(f.back[0], f.back[2]), q = hypot(f.back[1], f.back[3]);
@@ -238,7 +249,8 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         if (found[k].cost + k * side < found[best].cost + best * side) best = k;
     for (int k = 0; k <= SIDES; k++) {
         double *v = vertices + 2 * SIDES * k;
-        cost[k] = found[k].cost;
+        cost[k] = found[k].cost - found[k].undrawn;
+        lacks[k] = found[k].undrawn;
         residual[k] = isfinite(cost[k]) ? found[k].square : INFINITY;
         turned[k] = 0;
         if (!isfinite(cost[k])) continue;

@@ -9,25 +9,41 @@ static const double TREMOR = 0.045; /* spread of ink about what was meant, in th
 static const double SLOPPY = 0.1;   /* nobody's ink is off by much more than this */
 static const double RETRACE = 1.0;  /* nats an observation of ink that was drawn already */
 
+/* Where the pen was lifted on the way around: which sample is the first behind, where the ink ends and goes on, and what is
+ * missing of it at least. */
+typedef struct {
+    int next;
+    double end[2], begin[2], gap;
+} Lift;
+
 /* A closed chain of ink in its frame, and how its distances from a reading count. */
 typedef struct {
     const double *factor; /* of each sample, by its part's own size */
-    double cap2;          /* squared distances count up to this */
-    double length;        /* of the ink */
-    double observations;  /* independent ones, that it is worth */
-    double side;          /* nats to say one more side */
-    double lacks[2 * SAMPLES]; /* how far the pen was lifted on the way from the first sample, twice around */
-    double hopeless;      /* a first split that costs more [nats] is not looked into further */
+    double cap2; /* squared distances count up to this */
+    double length; /* of the ink */
+    double observations; /* independent ones, that it is worth */
+    double side; /* nats to say one more side */
+    const Lift *lifts; /* one behind each part, in order; the last one closes it */
+    int lift_count;
+    double gaps; /* what is missing of it at least, */
+    double undrawn; /* nats for each length of a reading's outline where no ink is */
+    double round; /* nats to say it as something round */
+    double hopeless; /* a first split that costs more [nats] is not looked into further */
 } Ink;
 
 /* A polygon over the ink's samples: its sides are the runs bounded by `cut`, counted from `start`; corner q is where side q
- * begins. Of outlines that are drawn long `stretch` says how much so. */
+ * begins. One side, `bridge`, may have no samples: nobody drew it, it goes straight from where the ink ends to where it goes
+ * on. Of outlines that are drawn long `stretch` says how much so. */
 typedef struct {
     const Runs *runs;
-    double stretch[2], stiffness;
+    double stretch[2];
     int k, start, cut[SIDES + 1];
+    int bridge; /* the side that was not drawn, or -1, */
+    const Lift *lift; /* and where that is; without one, where it would save most, */
+    double saving; /* and how much of what is undrawn */
     Line side[SIDES];
     double cost, square; /* nats to say the ink, given it, and the mean squared distance */
+    double undrawn; /* of those, for what of it nobody drew */
 } Polygon;
 
 /* Nats to say the ink's distances from an outline: Student's t for the tremor, unknown but about TREMOR, and a normal prior
@@ -41,9 +57,9 @@ static inline double retraced(const Ink *ink, double perimeter) {
     return RETRACE * ink->observations * fmax(1 - perimeter / fmax(ink->length, 1e-9), 0);
 }
 
-/* The best polygons of 3 .. SIDES sides over samples in their frame; of cost infinite where there is none. Of them keeps
+/* The best polygons of 3 .. SIDES sides over samples in their frame; of cost infinite where there is none. They keep
  * `square` and `longer`, which hold the samples as they are and, where `stretch` is not 1, drawn longer. */
-void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon found[SIDES + 1]);
+void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon best[SIDES + 1]);
 
 /* A polygon's corners, (k, 2), in the frame. */
 void polygon_corners(const Polygon *p, double *corners);

@@ -1,7 +1,8 @@
 /* The best polygons over the samples of a closed outline: where its corners are.
  *
- * A reading's nats have terms that no sum over the sides can hold: of flat corners, of short sides, of bows all to one side. So
- * the splits of least squares only propose polygons, and the cheapest of them is the best. */
+ * A reading's nats have terms that no sum over the sides can hold: of flat corners, of short sides, of bows all to one side, of
+ * what was not drawn. So the splits of least squares only propose polygons; the cheapest is refined, each of its corners moved and
+ * left out, so that it is the same wherever the pen began. */
 #include "outline.h"
 
 #include <math.h>
@@ -12,29 +13,45 @@
 static const double BOW = 0.0178;
 static const double BENT = 0.05;
 static const double ROUNDED = 0.018; /* usual mean bow, times the root of the number of sides */
-/* (tremor / bow)², while splitting: how much rather a side trembles than bows. Both are tried. */
-static const double STIFFNESS[2] = {0.02, 0.6};
+static const double STIFFNESS = 0.6; /* (tremor / bow)², while splitting: how much rather a side trembles than bows */
 static const double FLAT = 0.8; /* a corner that turns by less [rad] may be a bow, */
 static const double EVEN = 0.66; /* or less than this share of what it would in an even polygon */
 static const double REFLEX = 1.2; /* likewise one that turns inward: */
 static const double CLEAR = 0.36; /* its cosine: one that turns by more is clear, and no angle need be taken */
+static const double WIDE = 0.25; /* of the ink: where more is missing, what would fit best after all was not meant */
+static const double MENDS = 40; /* nats that moving its corners hardly ever saves of a polygon more */
+static const double ROUNDER = 80; /* nats that something round may take less, and polygons are not looked at further */
 static const double TIE = 1e-9; /* nats that no polygon is better by that was found again from another beginning */
 static const double INWARD = 4.0; /* nats that a corner which turns inward is rarer */
 static const double LACKING = 0.67; /* of a side, at most, may be where the pen was lifted: more of it was not drawn */
+static const double NO_SIDE = 100; /* nats that it is odd to take it for drawn all the same */
 static const double FLATNESS = 0.096;
 static const double THICK = 0.4; /* twice the area over the length: in thinner outlines ink is off by shares of that */
 static const double SHORT = 0.12; /* and a side shorter than this share of the outline a rounded corner: */
 static const double WALL = 2.7; /* unless its two corners turn by more than this [rad] together: it is a wall's end */
 static const double SHORTNESS = 0.0096; /* the spreads say how fast such readings become unlikely */
 
-enum { BEGINNINGS = 3, WINDOW = 3 }; /* samples to either side of a corner that say how sharp it is */
+enum { CUP = 4 }; /* sides of what is open on purpose where one was not drawn: of a polygon of more it was forgotten */
+enum { BEGINNINGS = 2, WINDOW = 3 }; /* samples to either side of a corner that say how sharp it is */
+
+/* The point of a side's line that is nearest to an end of ink. */
+static void foot(const Line *side, const double *end, const double *stretch, double *out) {
+    double x = end[0] * stretch[0] - side->x, y = end[1] * stretch[1] - side->y, t = x * side->dx + y * side->dy;
+    out[0] = side->x + t * side->dx;
+    out[1] = side->y + t * side->dy;
+}
 
 void polygon_corners(const Polygon *p, double *corners) {
     const Runs *r = p->runs;
     for (int q = 0; q < p->k; q++) {
-        int b = (p->start + p->cut[q]) % r->n, e = (b + r->n - 1) % r->n;
+        int b = (p->start + p->cut[q]) % r->n, e = (b + r->n - 1) % r->n, before = (q + p->k - 1) % p->k;
         double end[2] = {r->x[e], r->y[e]}, begin[2] = {r->x[b], r->y[b]}, *c = corners + 2 * q;
-        corner(&p->side[(q + p->k - 1) % p->k], &p->side[q], end, begin, c);
+        if (q == p->bridge)
+            foot(&p->side[before], p->lift->end, p->stretch, c);
+        else if (before == p->bridge)
+            foot(&p->side[q], p->lift->begin, p->stretch, c);
+        else
+            corner(&p->side[before], &p->side[q], end, begin, c);
         c[0] /= p->stretch[0];
         c[1] /= p->stretch[1];
     }
@@ -65,6 +82,41 @@ static double odd_side(const double *a, const double *b, const double *c, const 
         odd += 0.5 * brief * brief;
     }
     return odd;
+}
+
+/* Nats for how much of a polygon's outline nobody drew: along its sides, from where the ink ends to where it goes on. Notes where
+ * going straight would save most of it.
+ * at: corners, stretched as the polygon is.  length_of: its sides, as they are. */
+static double undrawn(const Ink *ink, Polygon *p, const double *at, const double *length_of) {
+    int n = p->runs->n, k = p->k;
+    double sum = 0;
+    p->saving = 0;
+    for (const Lift *lift = ink->lifts; lift < ink->lifts + ink->lift_count; lift++) {
+        int next = (lift->next - p->start + n) % n, last = (next + n - 1) % n, side[2] = {0, 0};
+        double along[2];
+        while (p->cut[side[0] + 1] <= last) side[0]++;
+        while (p->cut[side[1] + 1] <= next) side[1]++;
+        for (int e = 0; e < 2; e++) {
+            const double *a = at + 2 * side[e], *b = at + 2 * ((side[e] + 1) % k), *z = e ? lift->begin : lift->end;
+            double dx = b[0] - a[0], dy = b[1] - a[1], l2 = dx * dx + dy * dy;
+            double t = l2 > 0 ? ((z[0] * p->stretch[0] - a[0]) * dx + (z[1] * p->stretch[1] - a[1]) * dy) / l2 : 0;
+            along[e] = fmin(fmax(t, 0), 1) * length_of[side[e]];
+        }
+        double way = fmax(along[1] - along[0], 0);
+        if (side[0] != side[1]) {
+            way = length_of[side[0]] - along[0] + along[1];
+            if ((side[0] + 1) % k != side[1]) way += length_of[p->bridge];
+        } else if (way > LACKING * length_of[side[0]])
+            sum += NO_SIDE;
+        sum += ink->undrawn * fmax(way, lift->gap);
+        if (p->bridge < 0 && (side[0] + 1) % k == side[1]) {
+            if (way - lift->gap > p->saving) {
+                p->saving = way - lift->gap;
+                p->lift = lift;
+            }
+        }
+    }
+    return sum;
 }
 
 /* The polygon's cost, and its mean squared distance. Ink that overshoots a corner lies on its side's line: it pays for the
@@ -104,8 +156,6 @@ static void judge(const Ink *ink, Polygon *p) {
             int sample = p->start + i < r->n ? p->start + i : p->start + i - r->n;
             sum += (off2 < ink->cap2 ? off2 : ink->cap2) * ink->factor[sample];
         }
-        double lacks = ink->lacks[p->start + p->cut[q + 1] - 1] - ink->lacks[p->start + p->cut[q]];
-        if (lacks > LACKING * length_of[q]) odd = INFINITY;
         double usual = (share[q] - bows) / BOW, most = share[q] / BENT;
         bent *= 1 + 0.25 * usual * usual;
         odd += 0.5 * most * most +
@@ -114,7 +164,8 @@ static void judge(const Ink *ink, Polygon *p) {
     /* The frame makes a straight wall as wide as it is long; one that turns a corner stays thin in it. */
     double thick = fabs(area) * per_around / THICK;
     p->square = sum / (r->n * fmin(thick * thick, 1));
-    p->cost = misfit(p->square, ink->observations) + odd + 2.5 * log(bent) + retraced(ink, around);
+    p->undrawn = undrawn(ink, p, at, length_of);
+    p->cost = misfit(p->square, ink->observations) + odd + 2.5 * log(bent) + retraced(ink, around) + p->undrawn;
 }
 
 static int is_simple(const Polygon *p) {
@@ -123,9 +174,97 @@ static int is_simple(const Polygon *p) {
     return ink_is_simple(corners, p->k);
 }
 
+/* The cheapest polygons of each number of sides: those that are no outline, as their sides cross, may lead to one that is. */
+typedef struct {
+    Polygon *simple, any[SIDES + 1];
+} Found;
+
 /* Take a polygon for the best of its number of sides, if it is. */
-static void propose(const Polygon *p, Polygon *found) {
-    if (p->cost < found[p->k].cost - TIE && is_simple(p)) found[p->k] = *p;
+static void take(const Polygon *p, Found *found) {
+    if (p->cost < found->any[p->k].cost - TIE) found->any[p->k] = *p;
+    if (p->cost < found->simple[p->k].cost - TIE && is_simple(p)) found->simple[p->k] = *p;
+}
+
+/* The polygon with one more side, straight from where the ink ends to where it goes on. */
+static void put_bridge(Polygon *p) {
+    int n = p->runs->n, at = (p->lift->next - p->start + n) % n, q = 1;
+    if (at == 0) at = n;
+    while (p->cut[q] < at) q++;
+    for (int i = p->k; i > q; i--) {
+        p->cut[i + 1] = p->cut[i];
+        p->side[i] = p->side[i - 1];
+    }
+    p->k++;
+    p->cut[q + 1] = p->cut[q];
+    p->bridge = q;
+    p->side[q] = (Line){0, 0, 1, 0, 0, 0};
+}
+
+/* Judge a polygon, and take it; likewise with a side that nobody drew, where that may be cheaper. */
+static void propose(const Ink *ink, Polygon *p, Found *found) {
+    judge(ink, p);
+    take(p, found);
+    if (p->bridge < 0 && p->k >= CUP && p->k < SIDES && p->saving * ink->undrawn > ink->side) {
+        Polygon bridged = *p;
+        put_bridge(&bridged);
+        judge(ink, &bridged);
+        take(&bridged, found);
+    }
+}
+
+/* Fit the sides again that meet at corner q. */
+static void lay(Polygon *p, int q) {
+    int before = (q + p->k - 1) % p->k;
+    for (int i = q;; i = before) {
+        p->side[i] = runs_line(p->runs, (p->start + p->cut[i]) % p->runs->n, p->cut[i + 1] - p->cut[i], STIFFNESS);
+        if (i == before) return;
+    }
+}
+
+/* Move a corner by some samples. Returns whether all sides still have some. */
+static int move(Polygon *p, int q, int by) {
+    int before = (q + p->k - 1) % p->k;
+    if (p->bridge >= 0 && (q == p->bridge || before == p->bridge)) return 0;
+    if (q == 0) {
+        p->start = (p->start + by + p->runs->n) % p->runs->n;
+        for (int i = 1; i < p->k; i++) p->cut[i] -= by;
+    } else
+        p->cut[q] += by;
+    if (p->cut[q + 1] - p->cut[q] < 2 || p->cut[before + 1] - p->cut[before] < 2) return 0;
+    lay(p, q);
+    return 1;
+}
+
+/* Leave a corner out. Returns whether it can be. */
+static int leave_out(Polygon *p, int q) {
+    int k = p->k - 1, before = (q + k) % p->k;
+    if (p->bridge >= 0 && (q == p->bridge || before == p->bridge || k <= CUP)) return 0;
+    int by = q ? 0 : p->cut[1];
+    p->k = k;
+    p->start = (p->start + by) % p->runs->n;
+    for (int i = 0; i < k; i++) {
+        int from = i < q ? i : i + 1;
+        p->cut[i] = p->cut[from] - by;
+        p->side[i] = p->side[from];
+    }
+    p->cut[k] = p->runs->n;
+    if (p->bridge > q || (p->bridge >= 0 && q == 0)) p->bridge--;
+    lay(p, q < k ? q : 0);
+    return 1;
+}
+
+/* Move corners, each by a sample at a time, as long as that costs less. */
+static void refine(const Ink *ink, Polygon *p) {
+    for (int q = 0, idle = 0; idle < p->k; q = (q + 1) % p->k) {
+        idle++;
+        for (int by = -1; by <= 1; by += 2)
+            for (Polygon t = *p; move(&t, q, by); t = *p) {
+                judge(ink, &t);
+                if (!(t.cost < p->cost - TIE)) break;
+                *p = t;
+                idle = 0;
+            }
+    }
 }
 
 /* Where the ink turns most sharply. */
@@ -144,30 +283,27 @@ static int sharpest(const Runs *r) {
     return at;
 }
 
-/* The splits of least squares from a few beginnings, at each of which a side must begin: where the ink does, at a corner across
- * from there, and at the sharpest. */
-static void split_sides(const Ink *ink, const Runs *r, const double stretch[2], int way, Polygon *found) {
-    int opposite = 0;
+/* The splits of least squares from two beginnings, at each of which a side must begin: where the ink does, and at its sharpest
+ * corner. */
+static void split_sides(const Ink *ink, const Runs *r, const double stretch[2], Found *found) {
     Split split;
     Polygon p;
     p.runs = r;
-    p.stiffness = STIFFNESS[way];
+    p.bridge = -1;
     p.stretch[0] = stretch[0];
     p.stretch[1] = stretch[1];
     for (int b = 0; b < BEGINNINGS; b++) {
         double least = INFINITY;
-        p.start = b == 0 ? 0 : b == 1 ? opposite : sharpest(r);
-        split_begin(&split, r, way, p.start);
+        p.start = b == 0 ? 0 : sharpest(r);
+        split_begin(&split, r, p.start);
         split_further(&split, 2);
         for (p.k = 3; p.k <= SIDES; p.k++) {
             split_further(&split, p.k);
             split_bounds(&split, p.k, p.cut);
             for (int q = 0; q < p.k; q++)
-                p.side[q] = runs_line(r, (p.start + p.cut[q]) % r->n, p.cut[q + 1] - p.cut[q], p.stiffness);
-            judge(ink, &p);
-            propose(&p, found);
+                p.side[q] = runs_line(r, (p.start + p.cut[q]) % r->n, p.cut[q + 1] - p.cut[q], STIFFNESS);
+            propose(ink, &p, found);
             least = fmin(least, p.cost + p.k * ink->side);
-            if (p.k == 5) opposite = (p.start + p.cut[2]) % r->n;
             if (p.k >= 5 && (p.k + 1) * ink->side > least) /* more sides cost more than they could save */
                 break;
         }
@@ -175,11 +311,40 @@ static void split_sides(const Ink *ink, const Runs *r, const double stretch[2], 
     }
 }
 
-void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon found[SIDES + 1]) {
+/* Refine the cheapest polygon, or one of more sides that may be cheaper then, and what is left of it without one of its corners as
+ * long as that is cheaper. */
+static void refine_best(const Ink *ink, Found *found) {
+    const Polygon *any = found->any;
+    int best = 3;
+    for (int k = 4; k <= SIDES; k++)
+        if (any[k].cost + k * ink->side < any[best].cost + best * ink->side) best = k;
+    if (any[best].cost + best * ink->side > ink->round + ROUNDER || ink->gaps > WIDE * ink->length) return;
+    for (int k = SIDES; k > best; k--)
+        if (any[k].cost + (k - 1) * ink->side < any[best].cost + best * ink->side) best = k;
+    Polygon fewer = any[best];
+    refine(ink, &fewer);
+    take(&fewer, found);
+    for (int k = best - 1; k >= 3; k--) {
+        fewer.cost = INFINITY;
+        for (int q = 0; q <= k; q++) {
+            Polygon p = any[k + 1];
+            if (!leave_out(&p, q)) continue;
+            judge(ink, &p);
+            if (p.cost < fewer.cost) fewer = p;
+        }
+        if (fewer.cost > any[k + 1].cost + ink->side + MENDS) return;
+        refine(ink, &fewer);
+        take(&fewer, found);
+        if (any[k].cost > any[k + 1].cost + ink->side) return;
+    }
+}
+
+void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon best[SIDES + 1]) {
     const double even[2] = {1, 1}, drawn[2] = {stretch, 1 / stretch};
-    for (int k = 0; k <= SIDES; k++) found[k].cost = INFINITY;
-    runs_prepare(square, 1, 2, STIFFNESS);
-    for (int way = 0; way < 2; way++) split_sides(ink, square, even, way, found);
+    Found found = {.simple = best};
+    for (int k = 0; k <= SIDES; k++) best[k] = found.any[k] = (Polygon){.cost = INFINITY, .bridge = -1};
+    runs_prepare(square, 1, STIFFNESS);
+    split_sides(ink, square, even, &found);
     /* The ends of a long box may be as loose along it as its sides are across, as if it had been drawn square and
      * stretched, or less so: both are tried, as nobody says how a hand errs. */
     if (stretch > 1) {
@@ -188,7 +353,8 @@ void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, P
             longer->x[i] = square->x[i] * drawn[0];
             longer->y[i] = square->y[i] * drawn[1];
         }
-        runs_prepare(longer, 1, 1, STIFFNESS);
-        split_sides(ink, longer, drawn, 0, found);
+        runs_prepare(longer, 1, STIFFNESS);
+        split_sides(ink, longer, drawn, &found);
     }
+    refine_best(ink, &found);
 }

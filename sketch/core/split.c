@@ -45,7 +45,7 @@ static double bow_squares(int m) {
     return fourth - m * mean * mean;
 }
 
-void runs_prepare(Runs *r, int closed, int ways, const double *stiffness) {
+void runs_prepare(Runs *r, int closed, double stiffness) {
     int n = r->n;
     memcpy(r->x + n, r->x, n * sizeof *r->x);
     memcpy(r->y + n, r->y, n * sizeof *r->y);
@@ -93,13 +93,11 @@ void runs_prepare(Runs *r, int closed, int ways, const double *stiffness) {
             least[m] = mid - spread > 0 ? mid - spread : 0;
             per_length[m] = m / length2;
         }
-        for (int w = 0; w < ways; w++) {
-            double *cost = r->cost[w][i], stiff = stiffness[w];
-            cost[0] = cost[1] = 0;
-            for (int m = 2; m <= most_samples; m++) {
-                double left = least[m] - bowed[m] / (squares[m] + stiff * per_length[m]);
-                cost[m] = left > 0 ? left : 0;
-            }
+        double *cost = r->cost[i];
+        cost[0] = cost[1] = 0;
+        for (int m = 2; m <= most_samples; m++) {
+            double left = least[m] - bowed[m] / (squares[m] + stiffness * per_length[m]);
+            cost[m] = left > 0 ? left : 0;
         }
     }
 }
@@ -150,12 +148,11 @@ Line runs_line(const Runs *r, int first, int count, double stiffness) {
 /* What samples i, i + 1, .. of a split, counted from its beginning, cost as one run: by their number. */
 static const double *run_cost(const Split *s, int i) {
     int at = s->start + i;
-    return s->runs->cost[s->way][at < s->n ? at : at - s->n];
+    return s->runs->cost[at < s->n ? at : at - s->n];
 }
 
-void split_begin(Split *s, const Runs *r, int way, int start) {
+void split_begin(Split *s, const Runs *r, int start) {
     s->runs = r;
-    s->way = way;
     s->start = start;
     s->n = r->n;
     memcpy(s->best[1], run_cost(s, 0), sizeof s->best[1]);

@@ -63,8 +63,8 @@ static void polylines(const double *p, int n, double spread2, Runs *r, double *r
         r->x[i] -= x0;
         r->y[i] -= y0;
     }
-    runs_prepare(r, 0, 1, (double[]){1e9}); /* straight */
-    split_begin(&split, r, 0, 0);
+    runs_prepare(r, 0, 1e9); /* straight */
+    split_begin(&split, r, 0);
     residual[0] = INFINITY;
     for (int k = 1; k <= LEGS; k++) {
         if (k > BENDS && residual[k - 1] < ENOUGH * ENOUGH * spread2) { /* what more legs save takes more to say */

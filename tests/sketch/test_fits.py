@@ -21,7 +21,7 @@ def ring(vertices: list[tuple[float, float]], n: int = 100) -> np.ndarray:
 
 
 def fit(points: np.ndarray) -> object:
-    return fit_closed([points], 0.5, 0.3, 24.0, 8.0, math.inf)
+    return fit_closed([points], 0.5, 0.3, 24.0, 8.0, math.inf, 4.0)
 
 
 def nearest(found: np.ndarray, wanted: list[tuple[float, float]]) -> float:
@@ -130,3 +130,42 @@ def test_it_does_not_matter_where_on_an_outline_the_pen_begins(corners: list[tup
             for drawn in (np.roll(ink, first, axis=0), np.roll(ink, first, axis=0)[::-1]):
                 found = read([drawn]).readings
                 assert [len(r.outline) for r in found] == [len(corners)], (seed, first)
+
+
+def test_a_hexagon_with_a_side_undrawn_is_one() -> None:
+    v = ngon(6, 300, 200, 100)
+    noise = np.random.default_rng(3).normal(0, 0.5, (100, 2))
+    for missing in range(6):
+        sides = v[missing + 1 :] + v[: missing + 1]
+        ink = ring(sides, 120)[:100] + noise  # five of six sides
+        result = fit(ink)
+        cost = [result.cost[k] + result.lacks[k] + 8 * k for k in range(3, 11)]
+        assert cost.index(min(cost)) + 3 == 6
+        assert nearest(result.vertices(6), v) < 5
+        assert result.lacks[6] == pytest.approx(4.0 * 24 / 5, rel=0.1)
+
+
+def test_a_cup_is_open() -> None:
+    """Three sides of a box lack the fourth on purpose, however deep: three bars stay three bars."""
+    rng = np.random.default_rng(2)
+    for width in (300, 200, 120):
+        for flare in (0, 40):
+            a, b, c, d = (400 - flare, 200), (400, 500), (400 + width, 500), (400 + width + flare, 200)
+            t = np.linspace(0, 1, 40)[:, None]
+            sides = [
+                np.array(p) + t * np.subtract(q, p) + rng.normal(0, 0.4, (40, 2))
+                for p, q in ((a, b), (b, c), (c, d))
+            ]
+            assert [r.kind for r in read(sides).readings] == ["bar"] * 3
+
+
+def test_a_notched_box_is_the_same_backwards() -> None:
+    """Where its last side meets the first, a pen slips; between four sides and five there is little."""
+    rng = np.random.default_rng(4)
+    corners = [(12, 12), (0, 160), (28, 175), (41, 170), (40, 35), (28, 0), (17, 20), (10, 10)]
+    for _ in range(8):
+        v = np.array(corners) + rng.normal(0, 1.5, (8, 2))
+        ink = ring([(300 + x, 200 + y) for x, y in v.tolist()], 120)[:-4]
+        forth, back = (fit(order) for order in (ink, ink[::-1]))
+        for k in (4, 5):
+            assert forth.cost[k] == pytest.approx(back.cost[k], abs=1.5)
