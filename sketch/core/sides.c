@@ -212,13 +212,10 @@ static void propose(const Ink *ink, Polygon *p, Found *found) {
     }
 }
 
-/* Fit the sides again that meet at corner q. */
+/* Fit a side that was drawn again. */
 static void lay(Polygon *p, int q) {
-    int before = (q + p->k - 1) % p->k;
-    for (int i = q;; i = before) {
-        p->side[i] = runs_line(p->runs, (p->start + p->cut[i]) % p->runs->n, p->cut[i + 1] - p->cut[i], STIFFNESS);
-        if (i == before) return;
-    }
+    if (q == p->bridge) return;
+    p->side[q] = runs_line(p->runs, (p->start + p->cut[q]) % p->runs->n, p->cut[q + 1] - p->cut[q], STIFFNESS);
 }
 
 /* Move a corner by some samples. Returns whether all sides still have some. */
@@ -232,6 +229,7 @@ static int move(Polygon *p, int q, int by) {
         p->cut[q] += by;
     if (p->cut[q + 1] - p->cut[q] < 2 || p->cut[before + 1] - p->cut[before] < 2) return 0;
     lay(p, q);
+    lay(p, before);
     return 1;
 }
 
@@ -249,7 +247,7 @@ static int leave_out(Polygon *p, int q) {
     }
     p->cut[k] = p->runs->n;
     if (p->bridge > q || (p->bridge >= 0 && q == 0)) p->bridge--;
-    lay(p, q < k ? q : 0);
+    lay(p, (q + k - 1) % k);
     return 1;
 }
 
