@@ -44,16 +44,17 @@ def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[W
         mask = cv2.drawContours(mask.copy(), chinks, -1, 1, cv2.FILLED)
         distance = distances(mask)
     large = [(way, area) for way, area in every if area >= CHINK * pen * pen]
-    found = sorted(
-        (ring for seed in _seeds(large, distance, pen) if (ring := belt(mask, seed, pen)) is not None),
-        key=lambda r: -r[0],
-    )
+    found = [ring for seed in _seeds(large, distance, pen) if (ring := belt(mask, seed, pen)) is not None]
+    found.sort(key=lambda ring: -ring[0])
     rings: list[Way] = []
-    middles = np.zeros((0, 2))
+    middles, radii = np.zeros((0, 2)), np.zeros(0)
     for roundness, middle, radius, points in found:
-        if np.all(np.hypot(*(middles - middle).T) > radius):
+        # what has a ring in it is none, and two have no place in common
+        if any(radius > least + pen and np.hypot(*(middle - at)) < radius for _, at, least, _ in found):
+            continue
+        if np.all(np.hypot(*(middles - middle).T) > radii + radius - pen):
             rings.append(Way(points, {}, -CHANCE * roundness))
-            middles = np.concatenate([middles, points[:-1].mean(axis=0)[None]])
+            middles, radii = np.concatenate([middles, middle[None]]), np.append(radii, radius)
     return rings
 
 

@@ -11,6 +11,7 @@ from sketch.scan.binding import thin, trace
 from sketch.scan.corners import sharpen_corners
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.hidden import going_on
+from sketch.scan.rings import find_rings
 from sketch.scan.ways import Way
 
 Line = list[tuple[float, float]]
@@ -37,6 +38,17 @@ def test_a_small_x_in_one_stroke_anchors_its_box(pen: float, half: float, bow: f
 def test_a_ring_in_a_box_is_no_x(pen: float) -> None:
     scene = read([BOX, circle(250, 250, 12)], pen)
     assert not scene.bodies[0].anchored
+
+
+def test_what_has_a_ring_in_it_is_no_ring() -> None:
+    """However round it is: a pivot drawn in haste within a small wheel is the ring, and keeps its ink."""
+    turn = np.linspace(0, 2 * np.pi, 41)
+    hasty = 9 * (1 + 0.1 * np.cos(4 * turn))
+    pivot: Line = [(200 + r * np.cos(a), 200 + r * np.sin(a)) for r, a in zip(hasty, turn, strict=True)]
+    mask = (inked([circle(200, 200, 22), pivot], 5.0) > 0.5).astype(np.uint8)
+    (ring,) = find_rings(mask, cv2.distanceTransform(mask, cv2.DIST_L2, 3), 5.0)
+    radius = np.hypot(*(ring.points - 200).T)
+    assert radius.max() < 12
 
 
 @pytest.mark.parametrize(("pen", "back"), [(4.0, 8), (4.0, 14), (5.5, 8)])
