@@ -68,8 +68,11 @@ def _side_between(page: Page, way: Chain) -> Iterator[tuple[int, Array]]:
         if q.index in names or 1.3 * q.extent < gap or not page.apart(q.index, names):
             continue
         ink = page.strokes.samples[q.index]
+        (x0, y0, x1, y1), near = q.box, reach + q.length / len(ink)
+        if not all(x0 - near <= x <= x1 + near and y0 - near <= y <= y1 + near for x, y in (a, b)):
+            continue
         gaps = _distances(ink, ends)
-        if len(ink) * gap < FINE * q.length and gaps.min(axis=0).max() < reach + q.length / len(ink):
+        if len(ink) * gap < FINE * q.length and gaps.min(axis=0).max() < near:
             ink = _course(q, gap / FINE)
             gaps = _distances(ink, ends)
         if gaps.min(axis=0).max() > reach + q.length / len(ink) / 2:

@@ -117,11 +117,13 @@ def heading(points: Points, centre: Points, reach: float, sight: float) -> tuple
     return out[:2], out[2:]
 
 
-def off_course(stretches: list[Points], corners: Points) -> Points:
-    """The root mean square distance of each of some stretches of ink, (n, 2), from a course [pixels]."""
-    ink, line = np.concatenate(stretches), np.ascontiguousarray(corners)
-    ends = np.cumsum([len(stretch) for stretch in stretches], dtype=np.int32)
-    off = np.empty(len(stretches))
+def off_course(ink: Points, ends: NDArray[np.int32], corners: Points) -> Points:
+    """The root mean square distance of each of some stretches of ink from a course [pixels].
+
+    ink: all stretches, one after another, (n, 2).  ends: of each, the points up to its end.
+    """
+    line = np.ascontiguousarray(corners)
+    off = np.empty(len(ends))
     _library().ink_off_course(address(ink), address(ends), len(ends), address(line), len(line), address(off))
     return off
 

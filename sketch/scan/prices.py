@@ -59,6 +59,7 @@ class Prices:
         ends: of each stretch but crumbs, as of `lines`.  pen: its width [pixels]."""
         self._ways, self._page, self._ends, self._pen = ways, page, ends, pen
         self._taken: dict[tuple[int, ...], Taken | None] = {}
+        self._known: dict[Taken, tuple[Points, NDArray[np.int32], Points]] = {}
         self._free: dict[int, float] = {}  # nats to say each stretch of ink freely, as a stroke of its own,
         self._strange: dict[int, float] = {}  # and of these, those for being one
         self._fine: dict[int, float] = {}  # observations that it is worth in the likeliest ways
@@ -136,14 +137,26 @@ class Prices:
         line = c.outline if c.figure is None else c.figure
         if c.closed or c.figure is not None:
             line = np.concatenate([line, line[:1]])
-        names = [name for name in taken.ink if name not in taken.tails]
-        off = np.maximum(off_course([self._some[name] for name in names], line) - OFF * self._pen, 0.0)
-        scale = np.maximum([self._scale[name] for name in names], self._pen / 2)  # nothing drawn is smaller
-        fine = np.array([self._fine.get(name, 0.0) for name in names])
-        free = np.array([self._free.get(name, 0.0) for name in names])
+        some, ends, (scale, fine, free) = self._stretches(taken)
+        off = np.maximum(off_course(some, ends, line) - OFF * self._pen, 0.0)
         whole = c.scale or np.inf
         more = fine * (_misfit(off / np.minimum(scale, whole)) - _misfit(off / whole))
         return float(np.minimum(more, free).sum())
+
+    def _stretches(self, taken: Taken) -> tuple[Points, NDArray[np.int32], Points]:
+        """Some points of each stretch that a reading takes, but tails, up to where each goes, and of each the size of
+        the smallest thing that it may be part of, observations and nats, (3, n): many readings take the same."""
+        if taken not in self._known:
+            names = [name for name in taken.ink if name not in taken.tails]
+            some = [self._some[name] for name in names]
+            ends = np.cumsum([len(points) for points in some], dtype=np.int32)
+            worth = [
+                # nothing drawn is smaller than the pen
+                (max(self._scale[name], self._pen / 2), self._fine.get(name, 0.0), self._free.get(name, 0.0))
+                for name in names
+            ]
+            self._known[taken] = np.concatenate(some), ends, np.array(worth).T
+        return self._known[taken]
 
 
 def lines(ways: list[Way], pen: float) -> dict[int, int]:

@@ -74,7 +74,8 @@ def test_the_bend_of_an_arc_is_its_curvature() -> None:
 def test_stretches_are_off_a_course_by_their_distance() -> None:
     square = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10], [0, 0]])
     inside, beyond = np.array([[5.0, 2], [5, 1]]), np.array([[13.0, 14]])
-    assert np.allclose(off_course([inside, beyond], square), [np.sqrt(2.5), 5.0])
+    off = off_course(np.concatenate([inside, beyond]), np.array([2, 3], dtype=np.int32), square)
+    assert np.allclose(off, [np.sqrt(2.5), 5.0])
 
 
 def test_grain_is_filled_and_distances_stay_those_of_the_mask() -> None:
