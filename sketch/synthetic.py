@@ -3,9 +3,8 @@ samples.
 
 A stroke is an ideal path (straight or round), its corners rounded, bent by a slow drift of the hand and a
 fast tremor, with a hook where the pen goes down and an overshoot or a gap where strokes should meet. All
-lengths are shares of the shape's size, so that ink scales; a long thin outline is drawn with the care that
-its area takes. Nothing is random but the generator that is
-passed in::
+lengths but one are shares of the shape's size, so that ink scales; a long thin outline is drawn with the care
+that its area takes. Nothing is random but the generator that is passed in::
 
     rng = np.random.default_rng(7)
     strokes = outline([(0, 0), (200, 0), (200, 100), (0, 100)], HANDS["quick"], rng)
@@ -40,6 +39,7 @@ class Hand:
             size: a spread about zero.
         parts: the numbers of strokes that outlines are drawn in.
         spacing: between points, as a share of the size.
+        unsteady: trembling that is no less for a small shape, root mean square [pixels].
     """
 
     tremor: float = 0.003
@@ -49,6 +49,7 @@ class Hand:
     overshoot: float = 0.01
     parts: tuple[int, ...] = (1,)
     spacing: float = 0.02
+    unsteady: float = 0.0
 
 
 HANDS = {
@@ -209,7 +210,7 @@ def _pen(path: Array, size: float, hand: Hand, rng: np.random.Generator) -> Arra
         amplitude, phase = rng.standard_normal(2) / 2, rng.uniform(0, 2 * math.pi, 2)
         drift += amplitude * np.sin(2 * math.pi * frequency * along[:, None] + phase)
     tremor = _smooth(rng.standard_normal(path.shape)) * math.sqrt(3)
-    drawn = path + size * (hand.drift * drift + hand.tremor * tremor)
+    drawn = path + size * hand.drift * drift + (size * hand.tremor + hand.unsteady) * tremor
     if hand.hook and rng.random() < 0.5 and len(drawn) > 2:
         side = rng.uniform(2.0, 2.8) * math.copysign(1, rng.random() - 0.5)
         d = drawn[1] - drawn[0]
