@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sketch.kernel import beside, depth
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
-from sketch.writing import LARGEST, WRITTEN
+from sketch.writing import LARGEST, PINNED, WRITTEN
 
 __all__ = ["Context", "Pick"]
 
@@ -57,7 +57,7 @@ class Context:
         what is drawn on it [pixels]; what is small in that is no part of it.
         """
         chosen = [(proposed[p].candidates[k], proposed[p].rows[k]) for p, k in likely]
-        bodies = {c: row for c, row in chosen if c.closed or c.kind == "cross"}
+        bodies = {c: row for c, row in chosen if c.closed or c.kind in ("cross", "bar")}
         others = {
             c: row for c, row in (self._bodies | bodies).items() if c not in bodies or c not in self._bodies
         }
@@ -112,7 +112,10 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)
-        elif c.kind == "circle" and (bodies.around(c, extent / 2, 3 * extent) > 1 or bodies.axle(c, extent)):
+        elif c.kind == "circle" and (
+            bodies.around(c, extent / 2, PINNED * extent) + bodies.ending(c, extent) > 1
+            or bodies.axle(c, extent)
+        ):
             gains[k] += ANCHORS
     return gains
 
@@ -183,6 +186,7 @@ class _Bodies:
 
     def __init__(self, bodies: Around) -> None:
         self.closed = [(body, row) for body, row in bodies.items() if body.closed]
+        self.lines = [(c, row[4]) for c, row in bodies.items() if c.kind == "bar"]
         self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]
 
     def around(self, c: Fitted, reach: float, least: float = 0.0) -> int:
@@ -214,6 +218,15 @@ class _Bodies:
             for body, (x0, y0, x1, y1, extent) in self.closed
         )
 
+    def ending(self, c: Fitted, extent: float) -> int:
+        """How many open lines of other ink, PINNED times as large, end within c."""
+        return sum(
+            PINNED * extent < long
+            and set(c.pieces).isdisjoint(line.pieces)
+            and min(math.dist(c.middle, end) for end in line.outline[[0, -1]].tolist()) < extent
+            for line, long in self.lines
+        )
+
     def axle(self, c: Fitted, extent: float) -> bool:
         """Whether a small circle is at the middle of a round body of other ink."""
         return any(
@@ -225,9 +238,12 @@ class _Bodies:
         )
 
     def slip(self, c: Fitted, extent: float) -> bool:
-        """Whether an end of c touches the outline of a body of other ink that is twice as large."""
+        """Whether an end of c touches the outline of a body of other ink that is twice as large, with no pin there."""
         large = [(body, row) for body, row in self.closed if extent < 0.5 * row[4]]
+        pins = [(body, wide) for body, (*_, wide) in self.closed if wide < 0.5 * extent]
         for x, y in (c.outline[0].tolist(), c.outline[-1].tolist()) if large else ():
+            if any(math.dist(pin.middle, (x, y)) < wide for pin, wide in pins):
+                continue
             for body, (x0, y0, x1, y1, other) in large:
                 r = 0.1 * other
                 if (

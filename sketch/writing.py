@@ -16,7 +16,7 @@ from sketch.pieces import Page, Piece
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
 
-__all__ = ["LARGEST", "WRITTEN", "written"]
+__all__ = ["LARGEST", "PINNED", "WRITTEN", "written"]
 
 Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
@@ -31,7 +31,8 @@ MARKED = (
 )
 NEXT = 0.5  # of the larger stroke: between a letter and the next
 CLEAR = 0.08  # of a body's narrower half: as far from its outline as what is written in it is, at least
-RADIUS = 0.35  # of a ring's extent
+RADIUS = 0.5  # of a ring's extent: it is over what it touches
+PINNED = 3.0  # times as large as a pivot is what it joins, at least: the stem of an "a" is shorter
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
 HATCHED = WRITTEN  # nats that a stroke of hatching is no side of an outline
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
@@ -59,7 +60,14 @@ def written(
     }
     marks = _Marks(page, [(c, row) for c, _, row in chosen], LARGEST * page.drawn)
     letters = marks.in_bodies()
-    idle |= letters
+    pins = {  # among those, each as a ring
+        i
+        for p, _ in likely
+        for c, gain, row in zip(proposed[p].candidates, told[p], proposed[p].rows, strict=True)
+        if gain > 0 and not letters.isdisjoint(c.pieces) and marks.joins(c, row[4])
+        for i in c.pieces
+    }
+    idle |= letters - pins
     near = _near(page, marks.largest)
     while True:
         rows = _Rows(page, near, idle)
@@ -88,7 +96,8 @@ def written(
             if own[k] > 0 and not touched.isdisjoint(c.pieces):
                 own[k] -= marks.loss(rows, c, row)
                 own[k] -= MEASURE * (c.kind == "bar" and not measured.isdisjoint(c.pieces))
-                own[k] -= WITHIN * (c.closed and not letters.isdisjoint(c.pieces))
+                if c.closed and not letters.isdisjoint(c.pieces):
+                    own[k] -= WITHIN * (c.kind != "circle" or pins.isdisjoint(c.pieces))
                 own[k] -= HATCHED * (c.closed and len(hatched.intersection(c.pieces)))
     return out
 
@@ -105,6 +114,7 @@ class _Marks:
         self.largest = largest
         self._page = page
         self._bodies = [c for c, _ in likely if c.closed]
+        self._lines = [(c, row[4]) for c, row in likely if c.kind == "bar"]
         where = np.array([row for c, row in likely if c.closed]).reshape(-1, 5)
         self._boxes, self._extents = where[:, :4], where[:, 4]
         self._known: dict[Fitted, list[Fitted]] = {}
@@ -128,7 +138,7 @@ class _Marks:
     def loss(self, rows: _Rows, c: Fitted, where: Row) -> float:
         """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in.
 
-        A pivot of two bodies is no letter. What else is drawn over a body is one if they are within that body too, and
+        A pivot is no letter. What else is drawn over a body is one if they are within that body too, and
         next to it.
         """
         extent = where[4]
@@ -142,10 +152,10 @@ class _Marks:
         if not beside or c.kind not in ("circle", "cross"):
             return WRITTEN * beside
         under = self._under(c, extent)
+        if self.joins(c, extent):
+            return 0.0
         if not under:
             return WRITTEN * beside
-        if c.kind == "circle" and len(under) > 1:
-            return 0.0
         within = [
             i
             for i in rows.idle(c.pieces, extent)
@@ -154,6 +164,18 @@ class _Marks:
         if within and c.kind == "circle" and self._is_pinned_again(under[0], c):
             return WITHIN * len(within)
         return WITHIN * sum(self._is_next(c, i) for i in within)
+
+    def joins(self, c: Fitted, extent: float) -> bool:
+        """Whether it is a ring over two bodies, or over one and the end of a line: a pivot, however rough."""
+        if c.kind != "circle" or not (under := len(self._under(c, extent))):
+            return False
+        return under > 1 or any(
+            PINNED * extent < long
+            and math.dist(c.middle, end) < extent
+            and set(c.pieces).isdisjoint(line.pieces)
+            for line, long in self._lines
+            for end in line.outline[[0, -1]].tolist()
+        )
 
     def _is_pinned_again(self, body: Fitted, c: Fitted) -> bool:
         """Whether another small ring than c lies over a body and no other: eyes, and no nails."""

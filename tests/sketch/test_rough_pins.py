@@ -1,0 +1,53 @@
+"""Pins by a hand that trembles by a pixel however small it draws: a small ring is hardly round, and still a pin."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from pages import box, read
+
+from sketch.synthetic import Hand, arrow, circle, cross, line, outline
+
+Point = tuple[float, float]
+HAND = Hand(tremor=0.002, drift=0.008, rounding=0.02, overshoot=0.02, spacing=0.03, unsteady=0.7)
+MARK = Hand(drift=0.03, overshoot=0.03, spacing=0.11, unsteady=0.7)  # the same, drawing pins: 8 points or so
+SEEDS = range(8)
+
+
+def rod(a: Point, b: Point, rng: np.random.Generator) -> list[np.ndarray]:
+    """An outline along two pins and a little beyond."""
+    (ax, ay), (bx, by) = a, b
+    along = complex(bx - ax, by - ay)
+    middle = (ax + bx) / 2, (ay + by) / 2
+    return outline(box(*middle, abs(along) + 30, 26, float(np.angle(along))), HAND, rng)
+
+
+def pins(at: list[Point], rng: np.random.Generator) -> list[np.ndarray]:
+    return [stroke for p in at for stroke in circle(p, 8, MARK, rng)]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_rough_ring_over_two_rods_joins_them(seed: int) -> None:
+    """A four-bar linkage."""
+    rng = np.random.default_rng(seed)
+    at: list[Point] = [(380, 612), (440, 480), (830, 330), (880, 612)]
+    rods = [stroke for a, b in itertools.pairwise(at) for stroke in rod(a, b, rng)]
+    base = outline(box(640, 620, 700, 50), HAND, rng) + cross((640, 620), 30, HAND, rng)
+    scene = read(base, rods, pins(at, rng), arrow((1150, 120), (1150, 240), HAND, rng)).scene
+    assert len(scene.bodies) == 4
+    joined = [("b1", "b2"), ("b1", "b4"), ("b2", "b3"), ("b3", "b4")]
+    assert sorted(joint.bodies for joint in scene.joints) == joined
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_line_between_two_pins_is_a_rope_and_no_slip_of_the_pen(seed: int) -> None:
+    """A crane's, from its long arm to a crate."""
+    rng = np.random.default_rng(seed)
+    arm = outline(box(640, 280, 640, 34), HAND, rng) + cross((400, 280), 24, HAND, rng)
+    crate = outline(box(930, 520, 80, 70), HAND, rng)
+    rope = line([(930, 280), (930, 500)], HAND, rng)
+    scene = read(arm, crate, rope, pins([(930, 280), (930, 500)], rng)).scene
+    assert len(scene.bodies) == 3
+    assert sorted(joint.bodies for joint in scene.joints) == [("b1", "b3"), ("b2", "b3")]
