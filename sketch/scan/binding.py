@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -15,6 +16,7 @@ from sketch.library import address, library
 
 __all__ = [
     "Chains",
+    "along_lines",
     "belt",
     "bend",
     "course_length",
@@ -44,6 +46,8 @@ _INTS = np.ctypeslib.ndpointer(np.int32, ndim=1, flags=("C_CONTIGUOUS", "WRITEAB
 def _library() -> ctypes.CDLL:
     core = library()
     int32, real = ctypes.c_int32, ctypes.c_float
+    core.ink_along_lines.argtypes = [_MASK, int32, int32, _MASK, _FLOATS, _FLOATS, _FLOATS, int32, _MASK]
+    core.ink_along_lines.restype = None
     core.ink_crests.argtypes = [_MASK, _MASK, int32, int32, int32, int32, real, real, _MASK]
     core.ink_crests.restype = None
     core.ink_crisp.argtypes = [_MASK, _MASK, ctypes.c_int64, ctypes.c_uint8, _MASK, _MASK]
@@ -126,6 +130,19 @@ def off_course(ink: Points, ends: NDArray[np.int32], corners: Points) -> Points:
     off = np.empty(len(ends))
     _library().ink_off_course(address(ink), address(ends), len(ends), address(line), len(line), address(off))
     return off
+
+
+def along_lines(
+    dark: NDArray[Any], near: NDArray[Any], tensor: Sequence[NDArray[Any]], reach: int
+) -> NDArray[np.uint8]:
+    """Darkness, shape (h, w), and where `near` is not 0 its mean along the line there, up to `reach` [pixels] each way.
+
+    near, tensor: shape (h // 2, w // 2); of the structure tensor xx, xy and yy.
+    """
+    smooth = np.array(dark, np.uint8)
+    height, width = dark.shape
+    _library().ink_along_lines(dark, width, height, near, *tensor, reach, smooth)
+    return smooth
 
 
 def crests(

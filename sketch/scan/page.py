@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import crests, crisp_ink, darkness, distances, link, pieces
+from sketch.scan.broken import smooth_lines
 from sketch.scan.punched import punched
 from sketch.scan.quantiles import median, percentile
 from sketch.scan.ruling import FEWEST, drop_ruling
@@ -36,7 +37,8 @@ MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture th
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 SOLID = 0.6  # of its box: what a disc covers at least, and no outline
 HOLE = 0.012  # of the picture's size: a hole punched into the sheet has more from corner to corner of its box
-NOISELESS = 1.0  # of 255: what is seen by a camera has more noise
+NOISELESS = 1.0  # of 255: what is seen by a camera has more noise,
+SEEN = 1.5  # and this much though it was smoothed
 GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
@@ -71,6 +73,12 @@ class Page:
     darkness: Image
     noise: float
     edge: Image | None = None
+
+    def smoothed(self, reach: int) -> Page:
+        """The page, smoothed along its lines by `reach` pixels to either side."""
+        dark = smooth_lines(self.darkness, self.noise, reach)
+        paper = None if self.edge is None else (self.edge == 0).view(np.uint8)
+        return Page(dark, min(self.noise, max(_noise(dark, paper, 2), SEEN)), self.edge)
 
 
 def read_page(picture: Image) -> Page:

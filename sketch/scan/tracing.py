@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import distances, thin, trace
+from sketch.scan.broken import is_broken
 from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.crossed import crossed
 from sketch.scan.faces import standing
@@ -41,7 +42,8 @@ FEWEST_DOTS = 10_000  # [pixels] unless the picture is as small as a stamp
 LEAST_SIDE = 8  # [pixels] of a picture that can show anything
 FINEST = 0.5  # picture pixels to a pixel: the thinnest pens are thinned at twice the picture's resolution
 NARROWEST_PEN = 3.0  # [pixels]: a thinner pen is thinned at twice the resolution
-WIDEST_PEN = 6.4  # [pixels]: a wider pen is thinned at half the resolution
+WIDEST_PEN = 8.0  # [pixels]: a wider pen is thinned at half the resolution
+ANY_PEN = 6.4  # [pixels]: taken where there are no lines to tell
 FILLED = 0.025  # of the picture's size: no pen is as wide, so that all shapes are filled
 SMOOTHING = 0.8  # [points]: standard deviation of the smoothing along a stroke
 CERTAIN = -5.0  # [rad²]: a ring with less strain is not looked at as anything else
@@ -120,6 +122,14 @@ def _see(picture: NDArray[Any], scale: float) -> Traced:
     if min(work.shape[:2]) < LEAST_SIDE:
         return Traced()
     page = read_page(work)
+    seen = _inked(page, scale)
+    if seen.pen and seen.skeleton is not None and is_broken(seen.skeleton, seen.pen):
+        return _inked(page.smoothed(2 * NEARBY), scale)
+    return seen
+
+
+def _inked(page: Page, scale: float) -> Traced:
+    """The stages from the page to the skeleton; without a pen where there is no ink."""
     mask, left_out = ink_mask(page, NEARBY)
     skeleton, size = thin(mask)
     distance = distances(mask)
@@ -138,9 +148,9 @@ def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any
         side = 2 * round(2 * core) + 1  # also into its corners
         unfilled = cv2.dilate((distance > core).view(np.uint8), np.ones((side, side), np.uint8)) == 0
         area, length = (int(np.count_nonzero(unfilled & (some > 0))) for some in (mask, skeleton))
-        without = area / length if length else WIDEST_PEN
+        without = area / length if length else ANY_PEN
         pen = without if thick > FILL * without else pen  # a blot is not filled
-    return pen if pen < FILLED * mask.size**0.5 else WIDEST_PEN
+    return pen if pen < FILLED * mask.size**0.5 else ANY_PEN
 
 
 def _strokes(seen: Traced) -> list[Points]:

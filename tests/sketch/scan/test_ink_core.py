@@ -7,7 +7,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sketch.scan.binding import bend, course_length, crisp_ink, darkness, distances, heading, link, off_course
+from sketch.scan.binding import (
+    along_lines,
+    bend,
+    course_length,
+    crisp_ink,
+    darkness,
+    distances,
+    heading,
+    link,
+    off_course,
+)
 from sketch.scan.page import fill_grain
 
 
@@ -31,6 +41,34 @@ def test_crisp_ink_is_darker_than_half_of_the_darkest() -> None:
     expected = np.clip(np.rint(dark + 0.5 * (dark.astype(float) - mean)), 0, 255)
     assert np.array_equal(crisp, expected)
     assert np.array_equal(mask, (expected > darkest // 2) & (dark > 40))
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5, 1.2, 2.0, 2.9])
+def test_darkness_is_averaged_along_its_line(angle: float) -> None:
+    y, x = np.mgrid[:64, :80].astype(np.float64)
+    off, on = (
+        (y - 32) * np.cos(angle) - (x - 40) * np.sin(angle),
+        (x - 40) * np.cos(angle) + (y - 32) * np.sin(angle),
+    )
+    dashes = np.where((np.abs(off) < 3) & (np.floor(on / 2) % 2 == 0), 200, 0).astype(np.uint8)
+    # the gradient is across the line
+    tensor = [
+        np.full((32, 40), v, np.float32)
+        for v in (np.sin(angle) ** 2, -np.sin(2 * angle) / 2, np.cos(angle) ** 2)
+    ]
+    near = np.ones((32, 40), np.uint8)
+    near[:, :4] = 0
+    smooth = along_lines(dashes, near, (tensor[0], tensor[1], tensor[2]), 8).astype(float)
+    inside = (np.abs(off) < 1.5) & (np.abs(on) < 12)
+    assert np.abs(smooth[inside] - 100).max() < 40
+    assert smooth[(np.abs(off) > 5) & (np.abs(on) < 12)].max() == 0
+    assert np.array_equal(smooth[:, :8], dashes[:, :8])  # nothing is near there
+
+
+def test_where_lines_meet_nothing_is_averaged_along_them() -> None:
+    dark = np.random.default_rng(1).integers(0, 256, (20, 30), dtype=np.uint8)
+    same, none = np.ones((10, 15), np.float32), np.zeros((10, 15), np.float32)
+    assert np.array_equal(along_lines(dark, np.ones((10, 15), np.uint8), (same, none, same), 8), dark)
 
 
 def test_a_thin_line_between_strokes_links_them_and_a_bump_is_left_out() -> None:

@@ -104,6 +104,18 @@ def test_the_drawing_is_the_same_on_every_paper(name: str) -> None:
     )
 
 
+def grain_of(size: float, seed: int) -> np.ndarray:
+    rough = cv2.GaussianBlur(np.random.default_rng(seed).standard_normal((HEIGHT, WIDTH)), (0, 0), size)
+    return np.asarray(rough / rough.std())
+
+
+def test_lines_that_the_grain_breaks_are_whole() -> None:
+    for seed in range(4):
+        worn = ink(pen=5) * (grain_of(0.8, seed) < 0.3)  # a pencil touches what stands out of the sheet
+        sketch = read_picture(encoded(drawn(worn, pen=(110, 110, 110), noise=3)))
+        assert 4 <= len(sketch.strokes) <= 8  # and not about a hundred
+
+
 @pytest.mark.parametrize("quality", [30, 60, 90])
 def test_the_drawing_survives_compression(quality: int) -> None:
     assert_all(read_picture(encoded(PAPERS["uneven light"], ".jpg", cv2.IMWRITE_JPEG_QUALITY, quality)))
