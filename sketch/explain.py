@@ -48,14 +48,14 @@ def _shape(reading: Reading) -> str:
 
 
 def _pivot(reading: Reading, scene: Scene) -> str:
-    """What turns about a pivot: the bodies of the joint that stands where it was drawn."""
+    """What turns about a pivot: the bodies of the joints that stand where it was drawn."""
     ppm = scene.view.pixels_per_metre if scene.view else 1.0
     x, y = reading.outline.mean(axis=0) / ppm
-    for joint in scene.joints:
-        if math.dist(joint.position, (x, -y)) * ppm < 1e-6:
-            a, b = joint.bodies
-            return f"a pivot of {a} and {b}" if b else f"a pivot that holds {a} to the page"
-    return "a pivot, together with another"
+    joined = {name for j in scene.joints if math.dist(j.position, (x, -y)) * ppm < 1e-6 for name in j.bodies}
+    *most, last = [body.id for body in scene.bodies if body.id in joined] or [""]
+    if None in joined:
+        return f"a pivot that holds {last} to the page"
+    return f"a pivot of {', '.join(most)} and {last}" if most else "a pivot, together with another"
 
 
 def _why(reading: Reading) -> str:

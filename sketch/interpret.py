@@ -122,12 +122,12 @@ def _number(drawn: list[Drawn], joints: list[Joint]) -> None:
 
 
 def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[str]) -> list[Joint]:
-    """Small circles over two bodies that overlap, or over one beside which they are small, become pivots.
+    """Small circles over bodies that overlap, or over one beside which they are small, become pivots.
 
     pin: radius that one to the background hardly exceeds [pixels].
     """
     joints: list[Joint] = []
-    places: list[tuple[Array, float, list[Drawn], Joint]] = []
+    places: list[tuple[Array, float, list[Drawn], list[Drawn], Joint]] = []
     circles = [
         d for d in bodies.drawn if d.reading.kind == "circle" and d.reading.forced not in ("ball", "circle")
     ]
@@ -135,7 +135,7 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
         at = circle.outline.mean(axis=0)
         radius = circle.size / math.sqrt(math.pi)
         forced = circle.reading.forced == "pivot"
-        under, odds = _under(sketch, circle, at, radius, bodies)
+        under, further, odds = _under(sketch, circle, at, radius, bodies)
         if forced:
             under, odds = under or [d for _, d in _near(circle, at, NEAR * radius, bodies)][:1], 1.0
         if not under:
@@ -156,7 +156,7 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
         # rings that overlap are one pivot, and a ring in another; the smaller, which comes later, says better where
         again = [
             j
-            for other, r, same, j in places
+            for other, r, same, _, j in places
             if math.dist(other, at) < (r + radius if same == under else r - ON * radius)
         ]
         for joint in again:
@@ -167,7 +167,14 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
             notes.append(_either(circle, f"a pivot of {_ids(under)} to the page", "a ball"))
         pair = (under[0].body.id, under[1].body.id if len(under) == 2 else None)
         joints.append(Joint(bodies=pair, position=place))
-        places.append((at, radius, under, joints[-1]))
+        places.append((at, radius, under, further, joints[-1]))
+    pairs = {frozenset(joint.bodies) for joint in joints}
+    for _, _, under, further, joint in places:
+        for d in further:
+            # a rod on the rim of a wheel turns on the wheel, not on the frame behind that the wheel turns on
+            if not any({d.body.id, other.body.id} in pairs for other in under):
+                a, b = sorted((under[0], d), key=bodies.drawn.index)
+                joints.append(Joint(bodies=(a.body.id, b.body.id), position=joint.position))
     return joints
 
 
@@ -184,25 +191,31 @@ def _pinned(circle: Drawn, at: Array, radius: float, bodies: Bodies) -> bool:
 
 def _under(
     sketch: Sketch, circle: Drawn, at: Array, radius: float, bodies: Bodies
-) -> tuple[list[Drawn], float]:
-    """The bodies that a circle would be a pivot of, in order of drawing, and how likely it is one rather than a ball.
+) -> tuple[list[Drawn], list[Drawn], float]:
+    """The two bodies that a circle would be a pivot of, or one, in order of drawing; further ones that it goes through;
+    and how likely it is a pivot rather than a ball.
 
     The foremost two that its centre is over, or the one and one more that it misses by a slip of the hand; or else two
-    that meet in it, if it is as small as a nail.
+    that meet in it, if it is as small as a nail. What is behind those two is joined too, unless it holds the whole of
+    one: that moves in front of it.
     """
     near = _near(circle, at, AROUND * radius, bodies)
     over = bool(near) and near[0][0] <= 0
+    further: list[Drawn] = []
     if over:
         (_, first), *rest = near
         missed = [d for depth, d in rest if depth >= 0 and _off_ink(sketch, d, at) < radius]
-        first, *others = _foremost([first, *(d for depth, d in rest if depth < 0)], missed)
+        first, *others = every = _foremost([first, *(d for depth, d in rest if depth < 0)], missed)
+        further = [
+            d for d in others[1:] if d not in missed and not any(_holds(d, e) for e in every if e is not d)
+        ]
         reach = NEAR * radius
     else:
         rest = [(depth, d) for depth, d in near if depth < NEAR * radius and radius < NAILS * d.size]
         off = {d: min(depth, _off_ink(sketch, d, at)) for depth, d in rest} if len(rest) > 1 else {}
         first = min(off, key=lambda d: off[d], default=circle)
         if off.get(first, math.inf) > ON * radius:
-            return [], 0.0
+            return [], [], 0.0
         others, reach = [], (1 + ON) * radius
     if not others:
         others = [d for depth, d in rest if d is not first and depth < reach and touch(first, d, at, radius)]
@@ -210,10 +223,10 @@ def _under(
         others = _axle(first, circle, at, radius, bodies)
     under = [first, *others[:1]]
     if not over and len(under) == 1:
-        return [], 0.0
+        return [], [], 0.0
     limit = JOINS if len(under) == 2 and over else NAILS
     odds = 1 / (1 + (radius / (limit * min(d.size for d in under))) ** 6)
-    return sorted(under, key=bodies.drawn.index), odds
+    return sorted(under, key=bodies.drawn.index), further, odds
 
 
 def _foremost(over: list[Drawn], missed: list[Drawn]) -> list[Drawn]:
@@ -225,8 +238,13 @@ def _foremost(over: list[Drawn], missed: list[Drawn]) -> list[Drawn]:
     every = [*over, *missed]
     if len(every) < 3:
         return every
-    holds = {d: sum(all(d.depth(p) < 0 for p in e.outline) for e in every if e is not d) for d in every}
+    holds = {d: sum(_holds(d, e) for e in every if e is not d) for d in every}
     return sorted(every, key=lambda d: (holds[d], d in missed, -d.reading.strokes[-1]))
+
+
+def _holds(d: Drawn, other: Drawn) -> bool:
+    """Whether the whole of another body is within one."""
+    return all(d.depth(p) < 0 for p in other.outline)
 
 
 def _near(circle: Drawn, at: Array, reach: float, bodies: Bodies) -> list[tuple[float, Drawn]]:

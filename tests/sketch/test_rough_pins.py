@@ -51,3 +51,30 @@ def test_a_line_between_two_pins_is_a_rope_and_no_slip_of_the_pen(seed: int) -> 
     scene = read(arm, crate, rope, pins([(930, 280), (930, 500)], rng)).scene
     assert len(scene.bodies) == 3
     assert sorted(joint.bodies for joint in scene.joints) == [("b1", "b3"), ("b2", "b3")]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_pin_through_three_bodies_joins_all(seed: int) -> None:
+    """The sails of a windmill, and its tower; a wall behind the whole is no part of it."""
+    rng = np.random.default_rng(seed)
+    wall = outline(box(640, 380, 1000, 660), HAND, rng)
+    tower = outline([(560, 690), (610, 330), (670, 330), (720, 690)], HAND, rng) + cross(
+        (640, 600), 36, HAND, rng
+    )
+    sails = rod((430, 260), (850, 440), rng) + rod((550, 560), (730, 140), rng)
+    for behind in ([], wall):
+        scene = read(behind, tower, sails, pins([(640, 350)], rng)).scene
+        first = len(scene.bodies) - 3
+        assert [b.anchored for b in scene.bodies[first:]] == [True, False, False]
+        joined = {b for joint in scene.joints for b in joint.bodies}
+        assert joined == {b.id for b in scene.bodies[first:]}
+        assert len(scene.joints) == 2
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_rod_on_the_rim_of_a_wheel_leaves_its_frame_alone(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    frame = outline(box(500, 400, 260, 300), HAND, rng) + cross((400, 520), 30, HAND, rng)
+    wheel = circle((540, 380), 100, HAND, rng)
+    scene = read(frame, wheel, rod((580, 330), (900, 330), rng), pins([(540, 380), (580, 330)], rng)).scene
+    assert sorted(joint.bodies for joint in scene.joints) == [("b1", "b2"), ("b2", "b3")]
