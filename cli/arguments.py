@@ -72,13 +72,15 @@ class PrintVersion(argparse.Action):
         parser.exit(0)
 
 
-def number(above: float, at_most: float) -> Callable[[str], float]:
-    """A type of argument: a finite number in (above, at_most]."""
+def number(above: float, at_most: float, or_equal: bool = False) -> Callable[[str], float]:
+    """A type of argument: a finite number in (above, at_most], or in [above, at_most]."""
 
     def parse(text: str) -> float:
         value = _float(text)
-        if value <= above:
-            raise argparse.ArgumentTypeError(f"{text} is not greater than {above:g}")
+        if value < above if or_equal else value <= above:
+            raise argparse.ArgumentTypeError(
+                f"{text} is {'less' if or_equal else 'not greater'} than {above:g}"
+            )
         if value > at_most:
             raise argparse.ArgumentTypeError(f"{text} is more than {at_most:g}")
         return value

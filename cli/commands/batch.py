@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cli.arguments import UsageError, matching, number, whole_number
-from cli.commands.simulate import add_run_options, check_samples
+from cli.commands.simulate import RUN_OPTIONS, add_run_options, check_samples
 from cli.results import DATA
 
 __all__ = ["Done", "Task", "configure", "tasks_of", "work"]
@@ -78,10 +78,7 @@ def run(options: argparse.Namespace) -> int:
     from cli.outputs import Outputs
     from cli.progress import Progress, error, note
 
-    settings = {
-        name: getattr(options, name)
-        for name in ("duration", "fps", "tolerance", "engine", "gravity", "scale", "until_rest", "data")
-    }
+    settings = {name: getattr(options, name) for name in (*RUN_OPTIONS, "scale", "data")}
     if options.scheduler:
         results = _on_cluster(options.scheduler, tasks, settings)
     else:

@@ -21,10 +21,20 @@ if TYPE_CHECKING:
     from sim.scene import Scene
     from sim.trajectory import Trajectory
 
-__all__ = ["add_run_options", "check_samples", "configure", "motion_of", "run_of", "until_rest"]
+__all__ = [
+    "RUN_OPTIONS",
+    "add_run_options",
+    "check_samples",
+    "configure",
+    "motion_of",
+    "run_of",
+    "until_rest",
+]
 
 MAX_SAMPLES = 1_000_000  # of the motion; a day at 10 fps
 GRAVITY = 9.81  # [m/s²]
+# what motion_of looks at
+RUN_OPTIONS = ("duration", "until_rest", "fps", "tolerance", "engine", "gravity", "elasticity", "friction")
 
 DESCRIPTION = "Run drawings or scenes, and write what happens."
 EPILOG = """\
@@ -103,6 +113,16 @@ def add_run_options(p: argparse.ArgumentParser) -> None:
     p.add_argument(
         "--gravity", type=_gravity, metavar="none|down|GX,GY", help="instead of what was drawn [m/s², y up]"
     )
+    p.add_argument(
+        "--elasticity", type=number(0, 1, or_equal=True), metavar="0-1",
+        help="of every body: how much of its speed a bounce keeps (drawn: 0.3)",
+    )  # fmt: skip
+    p.add_argument(
+        "--friction",
+        type=number(0, 100, or_equal=True),
+        metavar="COEFFICIENT",
+        help="of every body (drawn: 0.5)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -173,6 +193,11 @@ def motion_of(loaded: Loaded, options: argparse.Namespace, tell: Callable[[str],
     scene = loaded.scene
     if options.gravity is not None:
         scene.gravity = options.gravity
+    for body in scene.bodies:
+        if options.elasticity is not None:
+            body.elasticity = options.elasticity
+        if options.friction is not None:
+            body.friction = options.friction
     for text in scene.notes:
         if options.gravity is None or "gravity" not in text:
             tell(text)
@@ -184,6 +209,8 @@ def motion_of(loaded: Loaded, options: argparse.Namespace, tell: Callable[[str],
         engine=options.engine,
     )
     _check_finite(motion)
+    if motion.profile.get("let_overlap"):
+        tell("bodies that were drawn too far into one another to be moved apart pass through each other")
     if options.until_rest:
         motion, rested = until_rest(motion, options.fps)
         if not rested:

@@ -189,3 +189,42 @@ def test_stages_show_what_was_seen_on_a_picture(tmp_path: Path) -> None:
     seen = sorted(path.name for path in (tmp_path / "seen").iterdir())
     assert seen == ["1-page.png", "2-mask.png", "3-skeleton.png", "4-strokes.png"]
     assert all(cv2.imread(str(tmp_path / "seen" / name)) is not None for name in seen)
+
+
+def test_elasticity_and_friction_are_those_of_every_body(
+    tmp_path: Path, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    """A ball is dropped from 1 m, and another slides at 1 m/s: v = e √(2 g h), and μ g t is lost."""
+    ball = {"shape": {"type": "circle", "radius": 0.1}}
+    block = {"shape": {"type": "rectangle", "size": [0.4, 0.4]}}
+    floor = {"shape": {"type": "rectangle", "size": [20, 1]}, "anchored": True}
+    bodies = [
+        {"id": "floor", "position": [0, -0.5], **floor},
+        {"id": "ball", "position": [3, 1.1], **ball},
+        {"id": "block", "position": [-3, 0.2], "velocity": [1, 0], **block},
+    ]
+    scene = tmp_path / "scene.json"
+    scene.write_text(json.dumps({"bodies": bodies, "gravity": [0, -10]}))
+    argv = ["simulate", str(scene), "-o", "-", "--fps", "100", "--duration", "0.46"]
+    assert main([*argv, "--elasticity", "0.5", "--friction", "0.1"]) == 0
+    run = json.loads(capfdbinary.readouterr().out)
+    fall = (2 * 1 / 10) ** 0.5
+    up = 0.5 * 10 * fall - 10 * (0.46 - fall)
+    assert run["velocities"][-1][1] == pytest.approx([0, up], abs=1e-3)
+    assert run["velocities"][-1][2] == pytest.approx([1 - 0.1 * 10 * 0.46, 0], abs=1e-3)
+    assert main([*argv, "--elasticity", "1.5"]) == 2
+    assert b"--elasticity: 1.5 is more than 1" in capfdbinary.readouterr().err
+    assert main([*argv, "--friction", "-1"]) == 2
+    assert b"--friction: -1 is less than 0" in capfdbinary.readouterr().err
+
+
+def test_bodies_too_far_in_one_another_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shape = {"shape": {"type": "circle", "radius": 1.0}}
+    scene = tmp_path / "scene.json"
+    told = []
+    for apart in (0.2, 1.98):
+        bodies = [{"id": "a", "position": [0, 0], **shape}, {"id": "b", "position": [apart, 0], **shape}]
+        scene.write_text(json.dumps({"bodies": bodies}))
+        assert main(["simulate", str(scene), "-o", str(tmp_path / "a.csv"), "--duration", "0.1"]) == 0
+        told.append("pass through each other" in capsys.readouterr().err)
+    assert told == [True, False]

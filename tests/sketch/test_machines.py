@@ -114,7 +114,11 @@ def test_a_wheel_on_a_pivot_is_no_pivot_and_a_pivot_of_two_rings_is_one() -> Non
         under = [outline(box(500, 480, 320, 100), NEAT, rng), outline(box(500, 540, 600, 60), NEAT, rng)]
         wheel = read(*under, circle((500, 520), 42, NEAT, rng), circle((500, 520), 10, NEAT, rng)).scene
         assert len(wheel.bodies) == 3
-        assert {b for joint in wheel.joints for b in joint.bodies} == {"b1", "b2", "b3"}  # the pin goes through all
+        assert {b for joint in wheel.joints for b in joint.bodies} == {
+            "b1",
+            "b2",
+            "b3",
+        }  # the pin goes through all
         rings = read(*under, circle((500, 520), 15, NEAT, rng), circle((500, 520), 5, NEAT, rng)).scene
         assert (len(rings.bodies), len(rings.joints)) == (2, 1)
 
