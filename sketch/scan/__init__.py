@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 
+from sim.scene import InputError
 from sketch.ink import Sketch, Stroke
 from sketch.scan.decode import decode, is_picture
 
@@ -19,7 +20,7 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
         stages: a folder for pictures of what was seen: page, mask, skeleton and strokes.
 
     The strokes are in the pixels of the picture as displayed upright, y down.  Raises InputError for what
-    cannot be read.
+    cannot be read, and where no ink is found.
     """
     from sketch.scan.tracing import trace_picture
 
@@ -30,11 +31,14 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
         from sketch.scan.stages import write_stages
 
         write_stages(stages, picture, traced)
-    notes = [] if traced.strokes else [traced.problem or "no ink was found on the picture"]
+    notes = []
     if not sound:
         notes.append("the picture's file is damaged: what could be decoded was read")
     if traced.specks:
         notes.append(f"left out {traced.specks} specks on the paper")
     notes += traced.left_out
+    if not traced.strokes:
+        problem = traced.problem or "no ink was found on the picture: nothing was drawn"
+        raise InputError("", problem, "; ".join(notes), kind="empty")
     strokes = [Stroke(points) for points in traced.strokes]
     return Sketch(strokes, float(width), float(height), None, picture, notes)
