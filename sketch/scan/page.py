@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import crests, crisp_ink, darkness, distances, link, pieces
 from sketch.scan.broken import smooth_lines
+from sketch.scan.framed import within_frame
 from sketch.scan.punched import punched
 from sketch.scan.quantiles import median, percentile
 from sketch.scan.ruling import FEWEST, drop_ruling
@@ -31,6 +32,7 @@ Image = NDArray[Any]  # uint8
 LIGHT_PIXELS = 120_000  # light is looked at on a picture reduced to this many
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line
 FINGER_MARK = 0.08  # likewise, the largest shadow or nail that is seen of a finger on the sheet
+HUNG = 0.2  # likewise, the largest thing that hangs on a board's frame or lies on it
 DARK_BOARD = 110  # of 255
 COLOURED = 1.25  # times the light in its darkest channel that paper has in its brightest
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
@@ -222,6 +224,7 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     A pixel of ink is at least half as dark as the darkest within `reach` pixels, which finds a line's edges
     however dark it is, or nearly as dark as full ink.  Of the pieces that those make, the ones count that are about
     as dark as full ink; what is at the edge of the sheet and no larger than a finger is what holds it.
+    Of a board, what is at its frame hangs on that.
     """
     import cv2
 
@@ -252,7 +255,13 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     if ruled or margins:
         found = _measure(mask, page)
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
-    left_out = ["left out what is printed from edge to edge of the sheet, or a crease"] if margins else []
+    frame = None if ruled or not photographed else _drop_frame(mask, found, reach)
+    if frame is not None:
+        page = replace(page, edge=frame if page.edge is None else np.asarray(cv2.max(frame, page.edge)))
+        found = _measure(mask, page)
+        full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
+    left_out = ["left out a frame all around, and what is beyond it"] if frame is not None else []
+    left_out += ["left out what is printed from edge to edge of the sheet, or a crease"] if margins else []
     solid = np.flatnonzero((found.area > SOLID * found.extent.prod(axis=1)) & (found.span > HOLE * size))
     if photographed and len(solid) > 1:
         ends = np.cumsum(found.area)
@@ -261,10 +270,28 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
         ]
         found.strength[holes] = 0
         left_out += [f"left out {len(holes)} holes along an edge of the sheet"] if len(holes) else []
-    held = found.at_edge & (found.span < FINGER_MARK * size)
+    held = found.at_edge & (found.span < (FINGER_MARK if frame is None else HUNG) * size)
     faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
     keep = (found.strength >= faintest) & (found.span >= 2 * reach) & ~held
     return found.without(mask, ~keep), left_out
+
+
+def _drop_frame(mask: Image, found: _Pieces, reach: int) -> Image | None:
+    """Erase a frame around nearly all of the sheet, and what is beyond, in place; returns 255 beyond it and within
+    `reach` pixels, shape (h, w), or None without any."""
+    import cv2
+
+    ends = np.cumsum(found.area)
+    for k in np.flatnonzero((found.extent >= SQUARED * np.array(mask.shape)).all(axis=1)):
+        piece = np.zeros_like(mask)
+        piece.ravel()[found.pixels[ends[k] - found.area[k] : ends[k]]] = 1
+        inside = within_frame(piece, SQUARED**2)
+        if inside is not None:
+            mask &= inside
+            return np.asarray(
+                255 * (1 - cv2.erode(inside, np.ones((4 * reach + 1,) * 2, np.uint8))), np.uint8
+            )
+    return None
 
 
 def _may_be_ruled(found: _Pieces, page: Page) -> bool:

@@ -211,6 +211,34 @@ def punched(floor: bool) -> np.ndarray:
     return picture
 
 
+def board(trembling: float) -> np.ndarray:
+    """The drawing within a frame, a pen in the tray below, and what is on the wall beside it."""
+    picture = np.full((HEIGHT + 100, WIDTH + 100, 3), 240, np.float64)
+    picture[50:-50, 50:-50] = drawn(ink())
+    corners = np.array([(40, 40), (WIDTH + 60, 46), (WIDTH + 56, HEIGHT + 60), (44, HEIGHT + 54)], float)
+    sides = [np.linspace(a, b, 60) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+    way = np.concatenate(sides)
+    swing = trembling * np.sin(np.arange(len(way)) / 3)
+    way += swing[:, None] * np.where(np.abs(np.gradient(way[:, :1], axis=0)) > 1, (0, 1), (1, 0))
+    cv2.polylines(picture, [np.round(16 * way).astype(np.int32)], True, (120, 120, 120), 9, cv2.LINE_AA, 4)
+    cv2.rectangle(picture, (200, HEIGHT + 36), (330, HEIGHT + 50), (40, 40, 180), cv2.FILLED)
+    cv2.circle(picture, (20, 300), 12, (60, 60, 60), 3)
+    return picture + np.random.default_rng(2).normal(0, 3, picture.shape)
+
+
+def test_a_boards_frame_is_not_drawn_and_nothing_on_it_or_beyond() -> None:
+    sketch = read_picture(encoded(np.clip(board(0.0), 0, 255).astype(np.uint8)))
+    assert "left out a frame all around, and what is beyond it" in sketch.notes
+    for stroke in sketch.strokes:
+        stroke.points[:] -= 50
+    assert_all(sketch)
+
+
+def test_a_box_that_a_hand_drew_around_everything_is_drawn() -> None:
+    sketch = read_picture(encoded(np.clip(board(5.0), 0, 255).astype(np.uint8)))
+    assert max(float(np.ptp(s.points[:, 0])) for s in sketch.strokes) > WIDTH
+
+
 def test_holes_along_an_edge_are_not_drawn_but_balls_on_a_floor_are() -> None:
     sketch = read_picture(encoded(punched(floor=False)))
     assert_all(sketch)
