@@ -22,10 +22,13 @@ from sketch.scan.ways import Way
 __all__ = ["find_rings", "take_rings"]
 
 Points = NDArray[np.float64]
+Belt = tuple[float, Points, float, Points]  # as of `belt`
 Box = tuple[float, float, float, float]  # left, top, right, bottom [pixels]
 
 SMALLEST, LARGEST = 0.9, 4.5  # pen widths: the radius that the pen's middle went along, as in core/belt.c
-CHINK = 1.0  # squares of the pen width: a smaller hole is one between lines that cross, for all one can tell
+CHINK = 0.5  # squares of the pen width: a smaller hole is one between lines that cross, for all one can tell
+APART = 0.5  # pen widths: rings whose belts are nearer to each other have ink in common
+WITHIN = 0.2  # of roundness: what is less round by more than a ring around it, and has some ink of that, is half of it
 CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to be chance
 ALL_ROUND = 0.7  # of its length: an edge that has so much of the ring is the ring
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
@@ -45,17 +48,26 @@ def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[W
         distance = distances(mask)
     large = [(way, area) for way, area in every if area >= CHINK * pen * pen]
     found = [ring for seed in _seeds(large, distance, pen) if (ring := belt(mask, seed, pen)) is not None]
-    found.sort(key=lambda ring: -ring[0])
+    # of the smaller there is less to be seen, and what lies between a ring and a line beside it may be round by chance
+    found.sort(key=lambda ring: -ring[0] * ring[2] ** 0.5)
     rings: list[Way] = []
     middles, radii = np.zeros((0, 2)), np.zeros(0)
-    for roundness, middle, radius, points in found:
-        # what has a ring in it is none, and two have no place in common
-        if any(radius > least + pen and np.hypot(*(middle - at)) < radius for _, at, least, _ in found):
+    for ring in found:
+        if any(_is_in(other, ring, pen) for other in found):
             continue
-        if np.all(np.hypot(*(middles - middle).T) > radii + radius - pen):
+        roundness, middle, radius, points = ring
+        if np.all(np.hypot(*(middles - middle).T) > radii + radius + APART * pen):
             rings.append(Way(points, {}, -CHANCE * roundness))
             middles, radii = np.concatenate([middles, middle[None]]), np.append(radii, radius)
     return rings
+
+
+def _is_in(ring: Belt, outer: Belt, pen: float) -> bool:
+    """Whether a ring within another shows that this is none: it is not only half of it, cut off by a line across."""
+    (roundness, middle, radius, _), (its, around, reach, _) = ring, outer
+    off = float(np.hypot(*(middle - around)))
+    has_own_ink = off + radius + APART * pen < reach
+    return reach > radius + pen and off < reach and (has_own_ink or roundness > its - WITHIN)
 
 
 def _seeds(

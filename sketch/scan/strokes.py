@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,9 +115,8 @@ class Layout:
 
     def ends(self, course: Course) -> tuple[int, int]:
         """The nodes at a course's ends, negative where there is none."""
-        return self.graph.node(course.steps[0]), self.graph.node(
-            (course.steps[-1][0], 1 - course.steps[-1][1])
-        )
+        head, tail = _ends(course)
+        return self.graph.node(head), self.graph.node(tail)
 
     def strain(self, course: Course) -> float:
         """What a course's turns and ends at junctions cost [rad²]."""
@@ -144,6 +143,19 @@ class Layout:
         own = {e for e, _ in course.steps}
         way, edges = self.shortest(b, a, SHARED_SIDE * self.length(course), without=own)
         return None if a != b and not edges else (way, edges)
+
+    def facing(self, sides: list[Course]) -> list[tuple[Course, Course]]:
+        """The pairs of open courses that may be two sides of one outline, those first whose ends are the nearest to
+        each other, in proportion to their lengths."""
+        ends = np.array([[self.graph.outward(end)[0] for end in _ends(course)] for course in sides])
+        lengths = [self.length(course) for course in sides]
+        found = []
+        for i, j in combinations(range(len(sides)), 2):
+            apart = np.hypot(*(ends[i][:, None] - ends[j]).transpose(2, 0, 1))
+            gap = min(apart[0, 0] + apart[1, 1], apart[0, 1] + apart[1, 0]) / (lengths[i] + lengths[j])
+            if gap < 2 * SHARED_SIDE:
+                found.append((float(gap), i, j))
+        return [(sides[i], sides[j]) for _, i, j in sorted(found)]
 
     def joined(self, first: Course, second: Course) -> list[Course]:
         """Two open courses as one, where an end of one is at an end of the other, or other ink leads there."""
@@ -205,6 +217,12 @@ class Layout:
         if tail and finish not in links:
             kept.append(_reach_out(tail)[None])
         return np.concatenate(kept)
+
+
+def _ends(course: Course) -> tuple[End, End]:
+    """Where a course begins and where it ends."""
+    last, side = course.steps[-1]
+    return course.steps[0], (last, 1 - side)
 
 
 def _bend_over(a: Branch, b: Branch) -> Points:

@@ -8,7 +8,7 @@ strokes would make can tell; so the strokes of the next best pairings are given 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import combinations, islice
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +91,7 @@ class Ways:
             for c in known
             if not c.closed and self._layout.length(c) > long and max(self._layout.ends(c)) >= 0
         ]
-        for first, second in islice(combinations(sides, 2), MOST):
+        for first, second in self._layout.facing(sides)[:MOST]:
             for course in self._layout.joined(first, second):
                 out += [self._way(course, self._links), *self._closed(course, self._links)]
         for course in follow(self._graph, self._smoothest, self._inner):
@@ -118,9 +118,9 @@ class Ways:
         return out
 
     def _closed(self, course: Course, links: Links) -> list[Way]:
-        """A course closed over other ink, if that is long enough to be a side."""
+        """A course closed over other ink, if that is long enough to be a side or the ink where both its ends are."""
         loan = self._layout.loan(course)
-        if loan is None or len(loan[0]) < SIDE * self._layout.pen:
+        if loan is None or (loan[1] and len(loan[0]) < SIDE * self._layout.pen):
             return []
         return [self._way(replace(course, borrowed=loan[0]), links)]
 

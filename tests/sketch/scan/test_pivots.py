@@ -1,0 +1,65 @@
+"""Pivots at the ends of rods: rings that other lines run into, run along and run across."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from test_tangles import Line, circle, inked, kinds, read
+
+from sketch.scan.rings import find_rings
+
+
+def rings(lines: list[Line], pen: float) -> list[tuple[NDArray[np.float64], float]]:
+    """The middle and the radius of each ring that is found."""
+    mask = (inked(lines, pen) > 0.5).astype(np.uint8)
+    found = find_rings(mask, cv2.distanceTransform(mask, cv2.DIST_L2, 3), pen)
+    middles = [(ring.points.min(axis=0) + ring.points.max(axis=0)) / 2 for ring in found]
+    return [
+        (middle, float(np.hypot(*(ring.points - middle).T).mean()))
+        for middle, ring in zip(middles, found, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+@pytest.mark.parametrize("gap", [1.3, 1.5, 1.7])
+def test_what_lies_between_a_ring_and_a_corner_beside_it_is_no_ring(pen: float, gap: float) -> None:
+    radius, near = 2 * pen, (2 + gap) * pen
+    corner: Line = [(200 - near, 100), (200 - near, 200 + near), (330, 200 + near)]
+    brace: Line = [(200 - near, 200 + 0.2 * pen), (200 - 0.2 * pen, 200 + near)]
+    ((middle, size),) = rings([circle(200, 200, radius), corner, brace], pen)
+    assert np.hypot(*(middle - 200)) < 1.5
+    assert abs(size - radius) < 1.5
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+@pytest.mark.parametrize("low", [0.0, 0.5, 0.8])
+def test_half_of_a_ring_that_a_line_crosses_is_no_ring(pen: float, low: float) -> None:
+    radius = 2.6 * pen
+    line: Line = [(100, 200 + low * pen), (300, 202 + low * pen)]
+    ((middle, size),) = rings([circle(200, 200, radius), line], pen)
+    assert np.hypot(*(middle - 200)) < 2
+    assert abs(size - radius) < 2
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+def test_a_ring_with_hardly_a_hole_is_one_among_the_lines_of_its_rod(pen: float) -> None:
+    radius = 1.0 * pen
+    sides: list[Line] = [[(200 + side * 1.2 * radius, 80), (200 + side * radius, 204)] for side in (-1, 1)]
+    ((middle, _),) = rings([circle(200, 200, radius), *sides], pen)
+    assert np.hypot(*(middle - 200)) < 2
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+def test_rods_that_end_in_their_rings_are_rods_however_many_they_are(pen: float) -> None:
+    """Their short sides are ink of the rings, or lost in it; each long side has its other beside it."""
+    beam: Line = [(20, 30), (500, 32), (498, 84), (22, 82), (20, 30)]
+    lines: list[Line] = [beam]
+    for x in (80, 170, 260, 350, 440):
+        top, low = 56.0, 290.0
+        lines.append([(x - 13, top + 3), (x - 13, low), (x + 13, low), (x + 13, top), (x - 13, top + 3)])
+        lines += [circle(x, top + 1, 13), circle(x, low, 13), circle(x, low, 38)]
+    scene = read(lines, pen)
+    assert kinds(scene) == ["circle"] * 5 + ["rectangle"] * 6
+    assert len(scene.joints) == 10
