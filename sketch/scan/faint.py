@@ -35,7 +35,7 @@ def drop_faint_marks(mask: Image, darkness: Image, chains: Chains, distance: NDA
     import cv2
 
     lines = [line.astype(np.intp) for line in chains.chains]
-    if len(lines) < 2:
+    if len(lines) < 2 or max(map(len, lines)) < LONG * pen:
         return 0
     size = np.array([len(line) for line in lines])
     start = np.cumsum(size) - size

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from test_tangles import BOX, circle, inked, kinds, read
 
-from sketch.scan.binding import thin, trace
+from sketch.scan.binding import distances, thin, trace
 from sketch.scan.corners import sharpen_corners
+from sketch.scan.faint import drop_faint_marks
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.hidden import going_on
 from sketch.scan.rings import find_rings
@@ -111,3 +112,13 @@ def test_a_line_that_ends_at_another_goes_on_to_the_far_edge_of_its_ink_alone() 
     assert 12 <= found.points[-1][1] <= 13  # half a pen from the ink's edge
     assert np.array_equal(found.points[: len(y)], line.points)
     assert going_on([Way(line.points, line.ink, 0.0)], distance, 5.0) == []  # it ends at no other ink
+
+
+def test_crumbs_alone_are_as_dark_as_they_are() -> None:
+    """Noise: no line is long enough to say how dark the pen's is, and so nothing is fainter."""
+    mask = np.zeros((60, 60), np.uint8)
+    mask[10:13, 10:15] = mask[30:33, 30:36] = 1
+    distance = distances(mask)
+    before = mask.copy()
+    assert drop_faint_marks(mask, 200 * mask, trace(*thin(mask)), distance, 8.0) == 0
+    assert np.array_equal(mask, before)
