@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import cv2
+import numpy as np
 import pytest
 
 from cli.main import main
@@ -249,4 +251,15 @@ def test_a_motion_that_is_not_finite_is_not_drawn(
     out = scene_file.parent / "run.mp4"
     assert main(["simulate", str(scene_file), "-o", str(out), "--fps", "4"]) == 1
     assert stderr_of(capsys)[0].endswith("the engine lost ball at 0.5 s [inside]")
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("command", ["simulate", "recognize"])
+def test_a_picture_without_ink_is_empty(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    paper, out = tmp_path / "paper.png", tmp_path / "out.json"
+    paper.write_bytes(cv2.imencode(".png", np.full((300, 400, 3), 250, np.uint8))[1].tobytes())
+    assert main([command, str(paper), "-o", str(out)]) == 3
+    assert stderr_of(capsys) == ["error: no ink was found on the picture: nothing was drawn [empty]"]
     assert not out.exists()

@@ -62,6 +62,18 @@ def test_the_stroke_comes_back(points: list[list[float]]) -> None:
     assert np.hypot(*(middle[-1] - stroke[-1])) < 10
 
 
+@pytest.mark.parametrize("shift", [-7, 7])
+def test_an_outline_may_begin_beside_an_end(shift: int) -> None:
+    """Some programs begin within the round cap, or behind it: the ends are where they were."""
+    stroke, widths = pen(WAVE)
+    outline = outline_of(stroke, widths)
+    assert abs(shift) / len(outline) > 0.015
+    middle = centre_line(np.roll(outline, shift, axis=0), PAGE)
+    assert middle is not None
+    assert np.hypot(*(middle[0] - stroke[0])) < 8
+    assert np.hypot(*(middle[-1] - stroke[-1])) < 8
+
+
 @pytest.mark.parametrize(
     "body",
     [
