@@ -37,6 +37,7 @@ def configure(p: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="pictures of what was seen on a picture: page, mask, skeleton, strokes",
     )
+    p.add_argument("-q", "--quiet", action="store_true", help="no notes")
     p.set_defaults(run=run)
 
 
@@ -57,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
             "", f"{options.input} is a scene already", "`sketchsim simulate` runs it", kind="format"
         )
     recognition = recognize_bytes(data, way)
-    for text in recognition.scene.notes:
+    for text in recognition.scene.notes if not options.quiet else ():
         note(text)
     with Outputs() as files:
         if output is not None:

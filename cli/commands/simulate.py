@@ -255,10 +255,15 @@ def _check_finite(motion: Trajectory) -> None:
 
 
 def _tell_what_left(lost: list[tuple[str, float]], tell: Callable[[str], object]) -> None:
-    for name, at in lost[:5]:
-        tell(f"{name} leaves the picture at {at:.1f} s")
-    if len(lost) > 5:
-        tell(f"{len(lost) - 5} more bodies leave the picture")
+    together: dict[str, list[str]] = {}  # a cart and its wheels
+    for name, at in sorted(lost, key=lambda t: t[1]):
+        together.setdefault(f"{at:.1f} s", []).append(name)
+    first, rest = list(together.items())[:5], list(together.values())[5:]
+    for when, (*most, last) in first:
+        who = f"{', '.join(most)} and {last} leave" if most else f"{last} leaves"
+        tell(f"{who} the picture at {when}")
+    if rest:
+        tell(f"others that leave the picture later: {sum(map(len, rest))}")
 
 
 def _tell_profile(result: Run, tell: Callable[[str], object]) -> None:

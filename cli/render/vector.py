@@ -127,7 +127,9 @@ def _annotations(figure: Figure) -> list[str]:
     head = [tip + (-along + 0.5 * side * across) * 13 * u for side in (1, -1)]
     strokes = (arrow, [head[0], tip, head[1]])
     lines = "".join(f'<polyline points="{_points(np.array(stroke))}"/>' for stroke in strokes)
-    return [*out, f'<g stroke="{ink}" stroke-width="{1.4 * figure.pen.width:g}">{lines}</g>']
+    out.append(f'<g stroke="{ink}" stroke-width="{1.4 * figure.pen.width:g}">{lines}</g>')
+    x, y = middle + np.array([-30, 6]) * u + (abs(along[0]) > 0.7) * np.array([24, 26]) * u
+    return [*out, f'<text x="{x:g}" y="{y:g}" {font}>g</text>']
 
 
 def _points(pixels: NDArray[np.float64]) -> str:

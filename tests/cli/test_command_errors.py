@@ -131,7 +131,7 @@ def test_without_outputs_the_name_of_the_video_is_told(
 
 
 def test_an_unknown_option_names_the_help_of_its_command(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["recognize", "drawing.json", "--quiet"]) == 2
+    assert main(["recognize", "drawing.json", "--duration"]) == 2
     assert stderr_of(capsys)[1] == "hint: `sketchsim recognize --help` lists the options"
 
 

@@ -111,6 +111,11 @@ def test_svg_shows_every_body_where_it_is(scene: Scene, straight: Straight, tmp_
     assert titles == ["floor", 'a <b> & "c"', "box"]
     floor = next(p for p in root.iter(f"{space}polygon"))
     assert floor.get("fill", "").startswith("url(#hatch")
+    assert [text.text for text in root.iter(f"{space}text")] == ["50 cm", "no gravity"]
+    scene.gravity = (0, -9.81)
+    with Outputs() as files:
+        Run("run", scene, straight(scene), 20, Look((640, 480))).write(files, str(out), lambda _: None)
+    assert [text.text for text in ET.parse(out).iter(f"{space}text")] == ["50 cm", "g"]
 
 
 def test_blueprint_is_light_on_blue(scene: Scene, straight: Straight) -> None:

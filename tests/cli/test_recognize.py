@@ -82,6 +82,16 @@ def test_explanation_names_every_reading(sketch_file: Path, capsys: pytest.Captu
         assert word in text
 
 
+def test_quiet_leaves_the_notes_out(sketch_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    drawing = json.loads(sketch_file.read_text())
+    drawing["strokes"].append(line((100, 100), (300, 105)))
+    sketch_file.write_text(json.dumps(drawing))
+    assert main(["recognize", str(sketch_file)]) == 0
+    assert "open line" in capsys.readouterr().err
+    assert main(["recognize", str(sketch_file), "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_explanation_leaves_standard_output_to_the_scene(
     sketch_file: Path, capfdbinary: pytest.CaptureFixture[bytes]
 ) -> None:

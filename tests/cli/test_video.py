@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -100,6 +101,11 @@ def test_bodies_that_leave_are_noted(scene_file: Path, capsys: pytest.CaptureFix
     assert main(["simulate", str(scene_file), "-o", str(out), "--duration", "4", "--size", "64x64"]) == 0
     # The ball's left side passes the page's right side (4 m) at (4 - 0.75 + 0.5) / 2 s.
     assert capsys.readouterr().err.splitlines() == ["note: ball leaves the picture at 1.9 s"]
+    scene = json.loads(scene_file.read_text())
+    scene["bodies"][2] = {**scene["bodies"][1], "id": "other", "position": [0.75, -0.45]}
+    scene_file.write_text(json.dumps(scene))
+    assert main(["simulate", str(scene_file), "-o", str(out), "--duration", "2.2", "--size", "64x64"]) == 0
+    assert capsys.readouterr().err.splitlines() == ["note: ball and other leave the picture at 1.9 s"]
 
 
 def spinning(scene: Scene) -> Scene:
