@@ -170,11 +170,16 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
         places.append((at, radius, under, further, joints[-1]))
     pairs = {frozenset(joint.bodies) for joint in joints}
     for _, _, under, further, joint in places:
+        through = list(under)
         for d in further:
             # a rod on the rim of a wheel turns on the wheel, not on the frame behind that the wheel turns on
-            if not any({d.body.id, other.body.id} in pairs for other in under):
-                a, b = sorted((under[0], d), key=bodies.drawn.index)
+            if any({d.body.id, other.body.id} in pairs for other in through):
+                continue
+            # each pair is joined, as only those that are may overlap at the pin
+            for other in through:
+                a, b = sorted((other, d), key=bodies.drawn.index)
                 joints.append(Joint(bodies=(a.body.id, b.body.id), position=joint.position))
+            through.append(d)
     return joints
 
 

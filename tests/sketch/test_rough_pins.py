@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from pages import box, read
 
+from sim import simulate
 from sketch.synthetic import Hand, arrow, circle, cross, line, outline
 
 Point = tuple[float, float]
@@ -66,9 +67,28 @@ def test_a_pin_through_three_bodies_joins_all(seed: int) -> None:
         scene = read(behind, tower, sails, pins([(640, 350)], rng)).scene
         first = len(scene.bodies) - 3
         assert [b.anchored for b in scene.bodies[first:]] == [True, False, False]
-        joined = {b for joint in scene.joints for b in joint.bodies}
-        assert joined == {b.id for b in scene.bodies[first:]}
-        assert len(scene.joints) == 2
+        tower_id, *sail_ids = (b.id for b in scene.bodies[first:])
+        pairs = [(tower_id, sail_ids[0]), (tower_id, sail_ids[1]), tuple(sail_ids)]
+        assert sorted(joint.bodies for joint in scene.joints) == pairs
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_truss_carries_itself_and_rests_on_what_it_overlaps(seed: int) -> None:
+    """Seven rods, of which two to four meet at a pin, on two supports that its ends were drawn a little into."""
+    rng = np.random.default_rng(seed)
+    a, b, c, d, e = at = [(300.0, 500.0), (500.0, 500.0), (700.0, 500.0), (400.0, 330.0), (600.0, 330.0)]
+    ends = ((a, b), (b, c), (a, d), (d, b), (b, e), (e, c), (d, e))
+    rods = [stroke for p, q in ends for stroke in rod(p, q, rng)]
+    supports = [
+        stroke
+        for x in (290, 710)
+        for stroke in outline(box(x, 560, 120, 110), HAND, rng) + cross((x, 575), 30, HAND, rng)
+    ]
+    scene = read(supports, rods, pins(at, rng), arrow((1150, 120), (1150, 240), HAND, rng)).scene
+    assert (len(scene.bodies), [b.anchored for b in scene.bodies[:2]]) == (9, [True, True])
+    run = simulate(scene, duration=3.0)
+    assert np.abs(run.positions[-1] - [b.position for b in scene.bodies]).max() < 0.2
+    assert run.profile["let_overlap"] == 0
 
 
 @pytest.mark.parametrize("seed", SEEDS)
