@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.kernel import beside, depth
+from sketch.pins import PINNED, is_pinned
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
-from sketch.writing import LARGEST, PINNED, WRITTEN
+from sketch.writing import LARGEST, WRITTEN
 
 __all__ = ["Context", "Pick"]
 
@@ -113,7 +114,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)
         elif c.kind == "circle" and (
-            bodies.around(c, extent / 2, PINNED * extent) + bodies.ending(c, extent) > 1
+            bodies.around(c, extent / 2, PINNED * extent) + bodies.lines_in(c, extent) > 1
             or bodies.axle(c, extent)
         ):
             gains[k] += ANCHORS
@@ -218,14 +219,9 @@ class _Bodies:
             for body, (x0, y0, x1, y1, extent) in self.closed
         )
 
-    def ending(self, c: Fitted, extent: float) -> int:
-        """How many open lines of other ink, PINNED times as large, end within c."""
-        return sum(
-            PINNED * extent < long
-            and set(c.pieces).isdisjoint(line.pieces)
-            and min(math.dist(c.middle, end) for end in line.outline[[0, -1]].tolist()) < extent
-            for line, long in self.lines
-        )
+    def lines_in(self, c: Fitted, extent: float) -> int:
+        """How many open lines c would be a pin of."""
+        return sum(is_pinned(line, long, c, extent) for line, long in self.lines)
 
     def axle(self, c: Fitted, extent: float) -> bool:
         """Whether a small circle is at the middle of a round body of other ink."""

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from sketch.hatching import hatching
 from sketch.kernel import Point, depth, words
 from sketch.pieces import Page, Piece
+from sketch.pins import is_pinned
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
 
-__all__ = ["LARGEST", "PINNED", "WRITTEN", "written"]
+__all__ = ["LARGEST", "WRITTEN", "written"]
 
 Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
@@ -32,7 +33,6 @@ MARKED = (
 NEXT = 0.5  # of the larger stroke: between a letter and the next
 CLEAR = 0.08  # of a body's narrower half: as far from its outline as what is written in it is, at least
 RADIUS = 0.5  # of a ring's extent: it is over what it touches
-PINNED = 3.0  # times as large as a pivot is what it joins, at least: the stem of an "a" is shorter
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
 HATCHED = WRITTEN  # nats that a stroke of hatching is no side of an outline
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
@@ -166,16 +166,11 @@ class _Marks:
         return WITHIN * sum(self._is_next(c, i) for i in within)
 
     def joins(self, c: Fitted, extent: float) -> bool:
-        """Whether it is a ring over two bodies, or over one and the end of a line: a pivot, however rough."""
-        if c.kind != "circle" or not (under := len(self._under(c, extent))):
+        """Whether it is a ring over two things, bodies or open lines: a pivot, however rough."""
+        if c.kind != "circle":
             return False
-        return under > 1 or any(
-            PINNED * extent < long
-            and math.dist(c.middle, end) < extent
-            and set(c.pieces).isdisjoint(line.pieces)
-            for line, long in self._lines
-            for end in line.outline[[0, -1]].tolist()
-        )
+        lines = sum(is_pinned(line, long, c, extent) for line, long in self._lines)
+        return len(self._under(c, extent)) + lines > 1
 
     def _is_pinned_again(self, body: Fitted, c: Fitted) -> bool:
         """Whether another small ring than c lies over a body and no other: eyes, and no nails."""

@@ -98,3 +98,17 @@ def test_a_rod_on_the_rim_of_a_wheel_leaves_its_frame_alone(seed: int) -> None:
     wheel = circle((540, 380), 100, HAND, rng)
     scene = read(frame, wheel, rod((580, 330), (900, 330), rng), pins([(540, 380), (580, 330)], rng)).scene
     assert sorted(joint.bodies for joint in scene.joints) == [("b1", "b2"), ("b2", "b3")]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_pin_may_join_two_lines(seed: int) -> None:
+    """A pendulum of one line that hangs from another; the ball on the ground beside it is pinned to nothing."""
+    rng = np.random.default_rng(seed)
+    ceiling = line([(300, 100), (900, 104)], HAND, rng) + cross((450, 102), 28, HAND, rng)
+    rope, bob = line([(640, 102), (560, 400)], HAND, rng), circle((555, 430), 36, HAND, rng)
+    ground = line([(700, 600), (1200, 602)], HAND, rng) + cross((1100, 600), 28, HAND, rng)
+    ball = circle((800, 560), 40, HAND, rng)
+    rings = circle((640, 102), 9, HAND, rng) + circle((560, 404), 9, HAND, rng)
+    scene = read(ceiling, rope, bob, ground, ball, rings).scene
+    assert sorted(joint.bodies for joint in scene.joints) == [("b1", "b2"), ("b2", "b3")]
+    assert len(scene.bodies) == 5
