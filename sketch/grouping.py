@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sketch.kernel import Point, Shaft
+from sketch.kernel import Point, Shaft, lent
 from sketch.loose import Chain
 from sketch.pieces import Array, Page, Piece
 
@@ -22,13 +22,10 @@ MOST_OPEN = 5  # and of those with wide gaps, which are many in a tangle
 WIDE = 0.1  # of a chain's ink
 PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
 REFLEX = 0.06  # likewise for each rad that it turns back; as in core/chains.c
-ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to
+ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to; as in core/lend.c
 LACKS = 0.2  # of what a way of several pieces lacks: likewise
-WHOLE = 0.8  # of a piece, between the ends of a way: it is that way's own side
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
-FINE = 8  # steps, at least, in which the way over other ink is looked for, from end to end,
-MOST_STEPS = 1000  # but not more than so many of all of that ink
-DETOUR = 1.5  # of that distance: the longest way over other ink
+FINE = 8  # steps from end to end: ways over other ink that are no further apart are one; as in core/lend.c
 STRAIGHT = 0.03  # of its length, what a stroke bends that may be a part of a straight line,
 ALIKE = 0.2  # and by how much more of it turns off the other [rad]
 BESIDE = 0.1  # of its length: as near as another part is
@@ -63,44 +60,18 @@ def _side_between(page: Page, way: Chain) -> Iterator[tuple[int, Array]]:
     # of several strokes each may go on elsewhere
     reach = ENDS_ON * length if len(way) == 1 else min(ENDS_ON * length, LACKS * gap)
     ends, known = np.array([a, b]), list[Array]()
-    low, high = (ends.min(axis=0) - reach).tolist(), (ends.max(axis=0) + reach).tolist()
-    for q in page.touching(*low, *high):
+    for q in page.reaching(a, b, reach):
         if q.index in names or 1.3 * q.extent < gap or not page.apart(q.index, names):
             continue
-        ink = page.strokes.samples[q.index]
-        (x0, y0, x1, y1), near = q.box, reach + q.length / len(ink)
-        if not all(x0 - near <= x <= x1 + near and y0 - near <= y <= y1 + near for x, y in (a, b)):
+        found = lent(page.strokes, q.stroke, q.points, ends, reach, several=len(way) > 1)
+        if found is None:
             continue
-        gaps = _distances(ink, ends)
-        if len(ink) * gap < FINE * q.length and gaps.min(axis=0).max() < near:
-            ink = _course(q, gap / FINE)
-            gaps = _distances(ink, ends)
-        if gaps.min(axis=0).max() > reach + q.length / len(ink) / 2:
-            continue
-        at, to = gaps.argmin(axis=0).tolist()  # from its last end, over the other's ink, to its first
-        count, step = abs(at - to), 1 if at > to else -1
-        if q.gap < ENDS_ON * q.length and 2 * count > len(ink):
-            count, step = len(ink) - count, -step
-        if not 0 < count * q.length / len(ink) < DETOUR * gap:
-            continue
-        if len(way) > 1 and count > WHOLE * len(ink):
-            continue
-        side = ink[(to + step * np.arange(count + 1)) % len(ink)]
+        side, step = found
+        count = len(side) - 1
         places = side[[count // 4, count // 2, 3 * count // 4]]
-        if all(np.hypot(*(places - others).T).max() > gap / FINE + q.length / len(ink) for others in known):
+        if all(np.hypot(*(places - others).T).max() > gap / FINE + step for others in known):
             known.append(places)
             yield q.index, side
-
-
-def _distances(ink: Array, ends: Array) -> Array:
-    return np.asarray(np.hypot(*(ink[:, None] - ends).transpose(2, 0, 1)))
-
-
-def _course(q: Piece, step: float) -> Array:
-    """A piece's ink in equal steps, of `step` at most unless it is very long [pixels], (n, 2)."""
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(q.points, axis=0).T))])
-    t = np.linspace(0, along[-1], min(math.ceil(q.length / step), MOST_STEPS))
-    return np.asarray(np.stack([np.interp(t, along, q.points[:, k]) for k in (0, 1)], axis=1))
 
 
 def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:

@@ -29,6 +29,7 @@ __all__ = [
     "heads",
     "is_simple",
     "joined",
+    "lent",
     "measure",
     "off_outline",
     "place",
@@ -42,7 +43,12 @@ Point = tuple[float, float]
 Box = tuple[float, float, float, float]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
-COURSE, HEADS, LIFT = 32, 4, 6  # as in core/course.c, core/heads.c and core/outline.h
+COURSE, HEADS, LIFT, LENT = (
+    32,
+    4,
+    6,
+    1000,
+)  # as in core/course.c, core/heads.c, core/outline.h and core/lend.c
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, *[_pointer] * 10)(
@@ -69,6 +75,9 @@ _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, 
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
 _placed = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer, _int, _int)(("ink_placed", _lib))
+_lend = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, *[_pointer] * 2, _double, _int, _pointer)(
+    ("ink_lend", _lib)
+)
 _ring = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer, _pointer)(("ink_ring", _lib))
 _touch = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _int, *[_double] * 4)(("ink_touch", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
@@ -381,6 +390,23 @@ def ring(points: Array, length: float) -> tuple[Array, float] | None:
     at = address(out)
     count = _ring(address(points), len(points), length, at + 16, at)
     return (out[1 : count + 1], float(out[0, 0])) if count else None
+
+
+def lent(
+    strokes: Strokes, name: int, points: Array, ends: Array, reach: float, *, several: bool
+) -> tuple[Array, float] | None:
+    """The side that a stroke lends to others, along it from their last end to their first, (n, 2), and the steps
+    that it is in [pixels]; None where it lends none (see core/lend.c).
+
+    points: of the stroke, (n, 2).  ends: of the others, the first and the last, (2, 2).  reach: as near to them its ink
+    must come.  several: whether they are several strokes.
+    """
+    out = np.empty((LENT + 2, 2))
+    at, row = address(out), strokes.measure[name]
+    samples = address(strokes.samples) + 16 * SAMPLES * name
+    out[0] = row[0], row[5]
+    count = _lend(samples, address(points), len(points), at, address(ends), reach, several, at + 16)
+    return (out[1 : count + 1].copy(), float(out[0, 0])) if count else None
 
 
 def is_simple(outline: Array) -> bool:

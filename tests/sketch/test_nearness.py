@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from pages import page
 
-from sketch.kernel import along, beside, fit_closed, measure, off_outline
+from sketch.kernel import along, beside, fit_closed, lent, measure, off_outline
 from sketch.loose import LooseEnds
 from sketch.pieces import page_of
 
@@ -170,3 +170,35 @@ def test_a_lozenge_is_far_from_every_rectangle() -> None:
         [drawn(np.array([[0.0, 0], [100, 30], [200, 0], [100, -30]]))], 0.5, 0.3, 30.0, 8.0, math.inf, 4.0
     )
     assert fit.extra > 0.1
+
+
+def lending(points: Array, ends: list[tuple[float, float]], *, several: bool = False) -> Array | None:
+    strokes = measure([points])
+    found = lent(strokes, 0, strokes.points, np.array(ends, dtype=float), 6.0, several=several)
+    if found is None:
+        return None
+    side, step = found
+    assert np.hypot(*np.diff(side, axis=0).T) == pytest.approx(np.full(len(side) - 1, step), rel=0.05)
+    return side
+
+
+def test_a_line_lends_its_ink_between_the_ends_of_others_from_the_last_to_the_first() -> None:
+    line = np.stack([np.linspace(0, 480, 481), np.full(481, 7.0)], axis=1)
+    side = lending(line, [(100, 5), (200, 10)])
+    assert side is not None
+    assert side[[0, -1]] == pytest.approx(np.array([[200.0, 7.0], [100.0, 7.0]]), abs=6.0)
+    short = lending(line, [(100, 5), (112, 5)])  # a step of its samples is nearly as long
+    assert short is not None
+    assert short[[0, -1]] == pytest.approx(np.array([[112.0, 7.0], [100.0, 7.0]]), abs=1.0)
+    assert lending(line, [(100, 5), (200, 20)]) is None  # out of reach
+    assert lending(line, [(10, 7), (470, 7)]) is not None
+    assert lending(line, [(10, 7), (470, 7)], several=True) is None  # it is one of theirs
+
+
+def test_what_goes_around_lends_the_shorter_way_and_no_detour() -> None:
+    t = np.linspace(0, 2 * math.pi, 300)
+    circle = 100 * np.stack([np.cos(t), np.sin(t)], axis=1)
+    side = lending(circle, [(70.7, -70.7), (70.7, 70.7)])  # a quarter, through where the pen began
+    assert side is not None
+    assert side[:, 0].min() > 60
+    assert lending(circle, [(100, 0), (-98, 5)]) is None  # half of it is more than half as long again
