@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Hashable, Sequence, Set
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from itertools import accumulate
 
 import numpy as np
@@ -58,30 +58,62 @@ class Alone:
     plain: bool
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class Proposed:
-    """What one piece proposed.
+    """What one piece proposed. What is made of it is made when it is asked for: not all of a picture's is.
 
     Attributes:
         candidates: readings of groups that it leads, and gains: what each saves against saying its ink freely.
-        rows: of the outline of each its least x and y, greatest x and y, and extent [pixels].  box: around them all.
-        arrows, bars: which of them are these.  borrowing: whether some have a side of another body.
-        alone: what they gain by themselves.
-        looked: what it saw of the page; seen: the box around all boxes of it.
+        looked: what it saw of the page.
         fits: of which they were made.
     """
 
     candidates: list[Fitted]
     gains: list[float]
-    rows: list[Row]
-    box: Box
-    arrows: list[int]
-    bars: list[int]
-    borrowing: bool
-    alone: Part
     looked: Looked
-    seen: Box
     fits: Fits
+
+    @cached_property
+    def rows(self) -> list[Row]:
+        """Of the outline of each candidate its least x and y, greatest x and y, and extent [pixels]."""
+        if not self.candidates:
+            return []
+        outlines = [c.outline for c in self.candidates]
+        first = np.fromiter(accumulate(map(len, outlines[:-1]), initial=0), dtype=np.intp)
+        points = np.concatenate(outlines)
+        low, high = np.minimum.reduceat(points, first), np.maximum.reduceat(points, first)
+        rows: list[Row] = np.column_stack([low, high, np.hypot(*(high - low).T)]).tolist()
+        return rows
+
+    @cached_property
+    def box(self) -> Box:
+        """The box around all these outlines."""
+        return _around([(row[0], row[1], row[2], row[3]) for row in self.rows])
+
+    @cached_property
+    def seen(self) -> Box:
+        """The box around all boxes of what it saw."""
+        return _around(self.looked.boxes)
+
+    @cached_property
+    def arrows(self) -> list[int]:
+        """Which of the candidates are arrows."""
+        return [k for k, c in enumerate(self.candidates) if c.kind == "arrow"]
+
+    @cached_property
+    def bars(self) -> list[int]:
+        """Which of them are bars."""
+        return [k for k, c in enumerate(self.candidates) if c.kind == "bar"]
+
+    @cached_property
+    def borrowing(self) -> bool:
+        """Whether some have a side of another body."""
+        return any(c.lender >= 0 for c in self.candidates)
+
+    @cached_property
+    def alone(self) -> Part:
+        """What they gain by themselves."""
+        return part([c.pieces for c in self.candidates], self.gains)
 
 
 class Proposals:
@@ -245,28 +277,7 @@ def proposing(
     candidates: list[Fitted], gains: list[float], looked: Looked | None = None, fits: Fits | None = None
 ) -> Proposed:
     """Readings with their gains; looked, fits: what they depend on, and were made of."""
-    seen = Looked() if looked is None else looked
-    rows, box = list[Row](), _around([])
-    if candidates:
-        outlines = [c.outline for c in candidates]
-        first = np.fromiter(accumulate(map(len, outlines[:-1]), initial=0), dtype=np.intp)
-        points = np.concatenate(outlines)
-        low, high = np.minimum.reduceat(points, first), np.maximum.reduceat(points, first)
-        rows = np.column_stack([low, high, np.hypot(*(high - low).T)]).tolist()
-        box = (*low.min(axis=0).tolist(), *high.max(axis=0).tolist())
-    return Proposed(
-        candidates,
-        gains,
-        rows,
-        box,
-        arrows=[k for k, c in enumerate(candidates) if c.kind == "arrow"],
-        bars=[k for k, c in enumerate(candidates) if c.kind == "bar"],
-        borrowing=any(c.lender >= 0 for c in candidates),
-        alone=part([c.pieces for c in candidates], gains),
-        looked=seen,
-        seen=_around(seen.boxes),
-        fits={} if fits is None else fits,
-    )
+    return Proposed(candidates, gains, Looked() if looked is None else looked, {} if fits is None else fits)
 
 
 def _closes(outline: Fitted, free: float) -> bool:
