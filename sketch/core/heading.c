@@ -87,19 +87,3 @@ INK_API double ink_bend(const double *xy, int32_t n, const double *start, double
     }
     return sqrt(off2 / (end - first)) < smooth * sight ? with / square : 0;
 }
-
-/* The root mean square distance of each of `count` stretches of ink, the points of `xy` up to each of `ends`, from a course
- * of n corners. */
-INK_API void ink_off_course(const double *xy, const int32_t *ends, int32_t count, const double *corners, int32_t n,
-                            double *off) {
-    for (int32_t s = 0, i = 0; s < count; i = ends[s++]) {
-        double sum = 0;
-        for (int32_t k = i; k < ends[s]; k++) {
-            double best = INFINITY;
-            for (int32_t q = 0; q + 1 < n; q++)
-                best = fmin(best, segment_distance2(xy[2 * k], xy[2 * k + 1], corners + 2 * q, corners + 2 * q + 2));
-            sum += best;
-        }
-        off[s] = sqrt(sum / (ends[s] - i));
-    }
-}

@@ -19,6 +19,7 @@ __all__ = [
     "along_lines",
     "belt",
     "bend",
+    "coarseness",
     "course_length",
     "crests",
     "crisp_ink",
@@ -26,7 +27,6 @@ __all__ = [
     "distances",
     "heading",
     "link",
-    "off_course",
     "pieces",
     "thin",
     "trace",
@@ -63,8 +63,8 @@ def _library() -> ctypes.CDLL:
     core.ink_heading.restype = None
     core.ink_length.argtypes = [pointer, int32]
     core.ink_length.restype = double
-    core.ink_off_course.argtypes = [pointer, pointer, int32, pointer, int32, pointer]
-    core.ink_off_course.restype = None
+    core.ink_coarseness.argtypes = [*[pointer] * 3, int32, pointer, int32, int32, double, double]
+    core.ink_coarseness.restype = double
     core.ink_belt.argtypes = [_MASK, int32, int32, _DOUBLES, ctypes.c_double, _DOUBLES]
     core.ink_belt.restype = int32
     core.ink_distance.argtypes = [_MASK, int32, int32, _FLOATS]
@@ -121,15 +121,27 @@ def heading(points: Points, centre: Points, reach: float, sight: float) -> tuple
     return out[:2], out[2:]
 
 
-def off_course(ink: Points, ends: NDArray[np.int32], corners: Points) -> Points:
-    """The root mean square distance of each of some stretches of ink from a course [pixels].
+def coarseness(
+    ink: Points,
+    ends: NDArray[np.int32],
+    worth: Points,
+    corners: Points,
+    slack: float,
+    size: float,
+    *,
+    closed: bool,
+) -> float:
+    """Nats that a shape owes where it says stretches of ink less precisely than the smallest thing that each may be
+    part of.
 
-    ink: all stretches, one after another, (n, 2).  ends: of each, the points up to its end.
+    ink: all stretches, one after another, (n, 2) [pixels].  ends: of each, the points up to its end.  worth: of each
+    the size of that smallest thing [pixels], its observations, and the nats to say it freely, (stretches, 3).
+    corners: of the shape, (k, 2) [pixels].  slack: how far off it ink may be [pixels].  size: of the shape [pixels], or
+    0 for a line.  closed: whether the last corner leads to the first.
     """
     line = np.ascontiguousarray(corners)
-    off = np.empty(len(ends))
-    _library().ink_off_course(address(ink), address(ends), len(ends), address(line), len(line), address(off))
-    return off
+    given = address(ink), address(ends), address(worth), len(ends), address(line), len(line)
+    return float(_library().ink_coarseness(*given, closed, slack, size or np.inf))
 
 
 def along_lines(

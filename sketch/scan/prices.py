@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from sketch.marks import RARE, RARE_ARROW
 from sketch.outlines import ARC, BOX, CORNER, ELLIPSE, FREEFORM, ROUND
 from sketch.pieces import Page, Piece
-from sketch.scan.binding import course_length, off_course
+from sketch.scan.binding import coarseness, course_length
 from sketch.scan.graph import Ink
 from sketch.scan.strokes import CRUMB
 from sketch.scan.ways import SIDE, Way
-from sketch.scoring import PARAMETER, SLOPPY, STRANGE, TREMOR, Fitted
+from sketch.scoring import PARAMETER, STRANGE, Fitted
 
 __all__ = ["Prices", "Taken", "lines"]
 
@@ -135,13 +135,9 @@ class Prices:
         """Nats that a reading owes where it says ink less precisely than the smallest thing that it may be part of
         would: a pivot's ring is no bump on a long side."""
         line = c.outline if c.figure is None else c.figure
-        if c.closed or c.figure is not None:
-            line = np.concatenate([line, line[:1]])
-        some, ends, (scale, fine, free) = self._stretches(taken)
-        off = np.maximum(off_course(some, ends, line) - OFF * self._pen, 0.0)
-        whole = c.scale or np.inf
-        more = fine * (_misfit(off / np.minimum(scale, whole)) - _misfit(off / whole))
-        return float(np.minimum(more, free).sum())
+        some, ends, worth = self._stretches(taken)
+        closed = c.closed or c.figure is not None
+        return coarseness(some, ends, worth, line, OFF * self._pen, c.scale, closed=closed)
 
     def _stretches(self, taken: Taken) -> tuple[Points, NDArray[np.int32], Points]:
         """Some points of each stretch that a reading takes, but tails, up to where each goes, and of each the size of
@@ -155,7 +151,7 @@ class Prices:
                 (max(self._scale[name], self._pen / 2), self._fine.get(name, 0.0), self._free.get(name, 0.0))
                 for name in names
             ]
-            self._known[taken] = np.concatenate(some), ends, np.array(worth).T
+            self._known[taken] = np.concatenate(some), ends, np.array(worth)
         return self._known[taken]
 
 
@@ -194,8 +190,3 @@ def _said(fitted: Fitted) -> float:
         "arrow": RARE_ARROW + 4 * PARAMETER,
     }
     return min(least[fitted.kind], fitted.cost)
-
-
-def _misfit(off: Points) -> Points:
-    """As of `sketch.scoring.misfit`, for one observation each."""
-    return np.asarray(0.5 * (np.log1p((off / TREMOR) ** 2) + (off / SLOPPY) ** 2))

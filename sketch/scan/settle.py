@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from sketch.arrows import ONE_ARROW
 from sketch.context import Context
 from sketch.kernel import depth
-from sketch.proposals import HOPELESS, Proposals, proposing
+from sketch.proposals import HOPELESS, Proposals, Proposed, proposing
 from sketch.scan.prices import Prices
 from sketch.scan.ways import Way
 from sketch.scoring import Fitted
-from sketch.search import best_packing
+from sketch.search import Packing, part
 
 __all__ = ["settle"]
 
@@ -75,28 +75,30 @@ def settle(
     context, proposed = Context(), proposing(candidates, gains)
     standing = [min(group) >= first for group in groups]
     ahead = np.array(
-        [AHEAD * (told_on or c) for told_on, c in zip(standing, _around_crosses(candidates), strict=True)]
+        [AHEAD * (told_on or c) for told_on, c in zip(standing, _around_crosses(proposed), strict=True)]
     )
     arrows = [k for k, c in enumerate(candidates) if c.kind == "arrow"]
     if arrows:
         ahead[max(arrows, key=lambda k: gains[k])] = AHEAD
     best, most = list[int](), -np.inf
+    inks, first_of = own + [ink for ink, _ in left], dict[int, list[int]]()
+    for k, ink in enumerate(inks):
+        first_of.setdefault(ink[0], []).append(k)
+    packing, leading = Packing(), list(first_of.values())
     for start in (gains, gains + ahead) if ahead.any() else (gains,):
         expected, chosen, told = np.array(start), list[int](), list[list[float]]()
         for _ in range(ROUNDS):
-            live = np.flatnonzero(expected > 0).tolist()
-            packed = best_packing(
-                [own[k] for k in live] + [ink for ink, _ in left],
-                expected[live].tolist() + [g for _, g in left],
-            )
-            last, chosen = chosen, [live[k] for k in packed if k < len(live)]
+            worth = [*expected.tolist(), *(saved for _, saved in left)]
+            parts = [part([inks[k] for k in some], [worth[k] for k in some]) for some in leading]
+            packed = [leading[p][k] for p, k in packing.best(parts)]
+            last, chosen = chosen, [k for k in packed if k < len(candidates)]
             if chosen == last:
                 break
             likely = [(0, k) for k in chosen]
             told.append(
                 _one_arrow(context.told([proposed], likely, page.size, page.drawn)[0], candidates, chosen)
             )
-            saved = sum(left[k - len(live)][1] for k in packed if k >= len(live))
+            saved = sum(worth[k] for k in packed if k >= len(candidates))
             if (total := sum(told[-1][k] for k in chosen) + saved) > most:  # as they stand around one another
                 best, most = chosen, total
             # of two sets each may speak for the other: what all of them say in the mean speaks for one
@@ -119,22 +121,20 @@ def _one_arrow(told: list[float], candidates: list[Fitted], chosen: list[int]) -
     return out
 
 
-def _around_crosses(candidates: list[Fitted]) -> list[bool]:
+def _around_crosses(proposed: Proposed) -> list[bool]:
     """Which of the readings are bodies with an X in them."""
+    candidates = proposed.candidates
+    out = [False] * len(candidates)
     crosses = [c for c in candidates if c.kind == "cross"]
-    out = []
-    for body in candidates:
-        (x0, y0), (x1, y1) = body.outline.min(axis=0).tolist(), body.outline.max(axis=0).tolist()
-        out.append(
-            body.closed
-            and any(
-                x0 < x < x1
-                and y0 < y < y1
-                and depth(x, y, body.outline) < 0
-                and set(body.pieces).isdisjoint(c.pieces)
-                for c, (x, y) in ((c, c.middle) for c in crosses)
-            )
-        )
+    bodies = [k for k, c in enumerate(candidates) if c.closed]
+    if not crosses or not bodies:
+        return out
+    x0, y0, x1, y1 = np.array([proposed.rows[k][:4] for k in bodies]).T[:, :, None]
+    x, y = np.array([c.middle for c in crosses]).T
+    for b, n in np.argwhere((x0 < x) & (x < x1) & (y0 < y) & (y < y1)).tolist():
+        body, cross = candidates[bodies[b]], crosses[n]
+        if not out[bodies[b]] and set(body.pieces).isdisjoint(cross.pieces):
+            out[bodies[b]] = depth(*cross.middle, body.outline) < 0
     return out
 
 

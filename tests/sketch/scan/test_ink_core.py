@@ -10,15 +10,16 @@ from hypothesis import strategies as st
 from sketch.scan.binding import (
     along_lines,
     bend,
+    coarseness,
     course_length,
     crisp_ink,
     darkness,
     distances,
     heading,
     link,
-    off_course,
 )
 from sketch.scan.page import fill_grain
+from sketch.scoring import misfit
 
 
 @given(st.integers(0, 2**32), st.booleans())
@@ -109,11 +110,25 @@ def test_the_bend_of_an_arc_is_its_curvature() -> None:
     assert course_length(arc) == pytest.approx(60, rel=1e-4)
 
 
-def test_stretches_are_off_a_course_by_their_distance() -> None:
-    square = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10], [0, 0]])
-    inside, beyond = np.array([[5.0, 2], [5, 1]]), np.array([[13.0, 14]])
-    off = off_course(np.concatenate([inside, beyond]), np.array([2, 3], dtype=np.int32), square)
-    assert np.allclose(off, [np.sqrt(2.5), 5.0])
+def test_a_shape_owes_for_ink_that_something_smaller_would_say_more_precisely() -> None:
+    square = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10]])
+    inside, left = np.array([[5.0, 2], [5, 1]]), np.array([[-3.0, 5]])  # off by the root of 2.5, and by 3
+    ink, ends = np.concatenate([inside, left]), np.array([2, 3], dtype=np.int32)
+    worth = np.array([[2.0, 4.0, 100.0], [40.0, 4.0, 100.0]])  # the second is part of nothing smaller
+
+    def nats(off: float, size: float) -> float:
+        return 4 * misfit((off / size) ** 2, 1)
+
+    owed = coarseness(ink, ends, worth, square, 0.5, 10.0, closed=True)
+    assert owed == pytest.approx(nats(np.sqrt(2.5) - 0.5, 2) - nats(np.sqrt(2.5) - 0.5, 10))
+    owed = coarseness(ink[2:], ends[:1] - 1, np.array([[1.0, 4.0, 7.0]]), square, 0.5, 10.0, closed=True)
+    assert owed == 7.0  # no more than to say it freely
+    opened = coarseness(ink[2:], ends[:1] - 1, np.array([[1.0, 4.0, 1e4]]), square, 0.5, 10.0, closed=False)
+    off = float(np.sqrt(3**2 + 5**2)) - 0.5  # the side beside it is none
+    assert opened == pytest.approx(nats(off, 1) - nats(off, 10))
+    assert coarseness(inside, ends[:1], worth[:1], square, 2.0, 10.0, closed=True) == 0.0
+    line = coarseness(inside, ends[:1], worth[:1], square, 0.5, 0.0, closed=False)
+    assert line == pytest.approx(nats(np.sqrt(2.5) - 0.5, 2))
 
 
 def test_grain_is_filled_and_distances_stay_those_of_the_mask() -> None:
