@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["Packing", "Part", "best_packing", "part"]
+__all__ = ["Packing", "Part", "part"]
 
 Group = tuple[int, ...]  # of pieces of ink
 Packed = tuple[Group, float]  # and what it gains
@@ -53,17 +53,6 @@ def part(groups: Sequence[Group], gains: Sequence[float]) -> Part:
     return Part(inks, its, index, tuple({i for group in inks for i in group}), hash((inks, its)))
 
 
-def best_packing(groups: Sequence[Group], gains: Sequence[float]) -> list[int]:
-    """Indices of pairwise disjoint groups whose gains (> 0) add up to the most; ink that no chosen group has stays
-    unexplained, and gains nothing."""
-    by_first: dict[int, list[int]] = {}
-    for g, group in enumerate(groups):
-        by_first.setdefault(group[0], []).append(g)
-    numbers = list(by_first.values())
-    parts = [part([groups[g] for g in own], [gains[g] for g in own]) for own in numbers]
-    return [numbers[p][k] for p, k in Packing().best(parts)]
-
-
 class Packing:
     """The best packing of a page whose groups change a little at a time: what did not change is not solved again.
 
@@ -76,7 +65,8 @@ class Packing:
         self._packed: dict[tuple[Packed, ...], list[int]] = {}
 
     def best(self, parts: Sequence[Part]) -> list[tuple[int, int]]:
-        """As `best_packing`, of the groups of some parts: the part, and the index in it, of each chosen one."""
+        """Pairwise disjoint groups of some parts whose gains (> 0) add up to the most: the part, and the index in it,
+        of each. Ink that no chosen group has stays unexplained, and gains nothing."""
         chosen: list[tuple[int, int]] = []
         clusters, self._clusters = self._clusters, {}
         packed, self._packed = self._packed, {}

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
 import pytest
 
-from sketch.search import Packing, best_packing, part
+from sketch.search import Packing, part
+
+
+def best_packing(groups: Sequence[tuple[int, ...]], gains: Sequence[float]) -> list[int]:
+    """Indices of the best packing of some groups, a part for each piece that they begin with."""
+    by_first: dict[int, list[int]] = {}
+    for g, group in enumerate(groups):
+        by_first.setdefault(group[0], []).append(g)
+    numbers = list(by_first.values())
+    parts = [part([groups[g] for g in own], [gains[g] for g in own]) for own in numbers]
+    return [numbers[p][k] for p, k in Packing().best(parts)]
 
 
 def brute(groups: list[tuple[int, ...]], gains: list[float]) -> float:
