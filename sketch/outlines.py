@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline, ring
 from sketch.loose import Chain
 from sketch.pieces import Page, Piece
+from sketch.sampling import unevenness
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit
 
 __all__ = ["LEAST_AXIS", "gone_over", "read_borrowing", "read_outline"]
@@ -34,6 +35,18 @@ BOX = 17.0  # nats to say a rectangle: five parameters, and that it is the commo
 UNROUND = 0.115  # usual log of a drawn circle's length over its width, either way: nobody's circles are round
 EVENLY = 0.4  # usual share of a round outline's turning that is at a polygon's corners, beyond what is there anyway;
 TURNING = 0.12  # and how much either differs from that: all of a polygon's turning is
+FEW, MANY = (
+    4,
+    16,
+)  # steps of the points around an outline: in more one sees how it turns; in fewer not even that
+EVEN_STEPS, CORNERED = (
+    0.06,
+    0.12,
+)  # shares of a step: how uneven they usually are of what is round, and has corners;
+STEPPING = 0.3  # and how much the log of it differs from either's
+CHANCE = (
+    8.0  # nats that a polygon's corners all lie halfway between points, or at them: its steps are even then
+)
 ELLIPSE = 7.5  # nats that an ellipse takes beyond a circle: with 1.6 times as long as wide it is either
 FREEFORM = 32.0  # nats that an outline of any course, a hill or a cloud, is rarer than a polygon,
 ARC = 9.0  # and nats to say each of the arcs that it goes in: a bow beside the corner
@@ -125,9 +138,13 @@ def _read(
         clean = _NEARLY_SAID[k] - said[k]
         if total[k] + clean < least + ALSO:
             total[k] += min(clean + _irregular(fit, k), 0.0)
+    ellipse = _ellipse(fit)
+    steps, even, cornered = _stepping([pieces[i].given for i in names], ellipse)
+    for k in range(3, MOST + 1):
+        total[k] += cornered
     sides, second = sorted(range(3, MOST_SIDES + 1), key=total.__getitem__)[:2]
-    evenly, straight = _turning(fit, sides)
-    out = _round(fit, fitted, gaps + evenly)
+    evenly, straight = _turning(fit, sides, steps)
+    out = _round(fit, ellipse, fitted, gaps + evenly + even)
     if math.isfinite(fit.cost[sides]):
         outline, rough, ahead = fit.vertices(sides), fit.cost[sides], (second, total[second] - total[sides])
         cost = total[sides] + besides + straight
@@ -135,7 +152,7 @@ def _read(
     if math.isfinite(fit.extra):
         off = fit.residual[4]
         unlike = misfit(off + fit.extra, count) - misfit(off, count)
-        cost = fit.cost[4] + unlike + BOX + fit.lacks[4] + besides
+        cost = fit.cost[4] + unlike + BOX + fit.lacks[4] + besides + cornered
         out.append(fitted("rectangle", cost=cost, outline=fit.rectangle))
     least = min(f.cost for f in out)
     if (
@@ -149,15 +166,33 @@ def _read(
     return out
 
 
-def _turning(fit: ClosedFit, sides: int) -> tuple[float, float]:
+def _turning(fit: ClosedFit, sides: int, steps: int) -> tuple[float, float]:
     """Nats to say how much of the ink's turning is at a polygon's corners, of something round and of the polygon.
 
     Of few corners the distances tell enough, and beside many nothing is left to turn.
+    steps: between points, as of `_stepping`: all turning is at these, and as many as there are corners may be corners.
     """
     if not FEWEST <= sides <= MOST or not math.isfinite(fit.cost[sides]):
         return 0.0, 0.0
-    turning = min(max(float(fit.turning[sides]), EVENLY), 1.0)
-    return 0.5 * ((turning - EVENLY) / TURNING) ** 2, 0.5 * ((1 - turning) / TURNING) ** 2
+    off = 1 - min(max(float(fit.turning[sides]), 0.0), 1.0)
+    off = min(off * (1 - sides / MANY) / (1 - sides / steps), 1 - EVENLY)
+    return 0.5 * ((1 - off - EVENLY) / TURNING) ** 2, 0.5 * (off / TURNING) ** 2
+
+
+def _stepping(given: list[Array | None], ellipse: tuple[Array, Array] | None) -> tuple[int, float, float]:
+    """How many steps the points of ink are apart, as far as there are few, and the nats to say how even they are, of
+    something round and of a polygon of few sides.
+
+    Between few points nobody sees how the ink turns; but in equal steps of length along it they are nearer where a
+    corner lies between them, and equally far apart along something round.
+    """
+    parts = [points for points in given if points is not None]
+    steps = sum(map(len, parts)) - len(parts)
+    if ellipse is None or len(parts) < len(given) or not MOST < steps < MANY:
+        return MANY, 0.0, 0.0
+    off = math.log(max(unevenness(parts, *ellipse), EVEN_STEPS / 10))
+    even, cornered = max(off - math.log(EVEN_STEPS), 0.0), max(math.log(CORNERED) - off, 0.0)
+    return steps, 0.5 * (even / STEPPING) ** 2, min(0.5 * (cornered / STEPPING) ** 2, CHANCE)
 
 
 def _irregular(fit: ClosedFit, k: int) -> float:
@@ -211,22 +246,17 @@ def gone_over(page: Page, fitted: Fitted, pieces: Sequence[Piece]) -> list[float
     ]
 
 
-def _round(fit: ClosedFit, fitted: Callable[..., Fitted], gaps: float) -> list[Fitted]:
-    """The circle and the ellipse; one hardly longer than wide is a circle too.
-
-    fitted: makes a reading of what all readings of the outline have in common.
-    """
-    x, y, r = fit.circle
-    circle = fitted("circle", cost=fit.circle_cost + ROUND + gaps, outline=np.array([x, y]) + r * _RING)
+def _ellipse(fit: ClosedFit) -> tuple[Array, Array] | None:
+    """The middle of the ellipse [pixels], and half axes of it as columns, (2, 2); None where the conic is none."""
     a, b, c, d, e = fit.conic.tolist()
     if a * a + b * b > 0.5:  # in this frame whatever is round is nearly a circle
-        return [circle]
+        return None
     # about its centre (u, v) the conic is zᵀ M z = level, M = [[1 - a, -b], [-b, 1 + a]]
     det = 1 - a * a - b * b
     u, v = (c * (1 + a) + d * b) / (2 * det), (c * b + d * (1 - a)) / (2 * det)
     level = e + (c * u + d * v) / 2
     if not 0.2 < level < 5:
-        return [circle]
+        return None
     # half axes: z = sqrt(level) M^-1/2 (unit vector), then to pixels; as a matrix with those columns
     (p, q), (o, s) = fit.back.tolist()
     root = math.sqrt(det)
@@ -237,10 +267,24 @@ def _round(fit: ClosedFit, fitted: Callable[..., Fitted], gaps: float) -> list[F
         f * (1 - a + root),
     )  # square root of M's inverse (Cayley-Hamilton)
     axes = np.array([[p * m00 + q * m01, p * m01 + q * m11], [o * m00 + s * m01, o * m01 + s * m11]])
+    return fit.mean + fit.back @ np.array([u, v]), axes
+
+
+def _round(
+    fit: ClosedFit, ellipse: tuple[Array, Array] | None, fitted: Callable[..., Fitted], gaps: float
+) -> list[Fitted]:
+    """The circle and the ellipse; one hardly longer than wide is a circle too.
+
+    fitted: makes a reading of what all readings of the outline have in common.
+    """
+    x, y, r = fit.circle
+    circle = fitted("circle", cost=fit.circle_cost + ROUND + gaps, outline=np.array([x, y]) + r * _RING)
+    if ellipse is None:
+        return [circle]
+    middle, axes = ellipse
     (k, ll), (m, n) = axes.tolist()
     total, area = k * k + ll * ll + m * m + n * n, abs(k * n - ll * m)
     longer = math.acosh(max(total / (2 * area), 1.0))  # log of the half axes' ratio
-    middle = fit.mean + fit.back @ np.array([u, v])
     cost = fit.ellipse_cost + ROUND + gaps
     if cost + 0.5 * (longer / UNROUND) ** 2 < circle.cost:
         ring = middle + math.sqrt(area) * _RING

@@ -45,6 +45,7 @@ class Piece:
             a distance that goes with the size of what is drawn.
         residual: mean squared distance from its best polyline of k segments [pixels²], k from 1.
         vertices: of those polylines: vertices[k, :k + 1].
+        given: of few points in equal steps of length those that the stroke came with, without corners between them.
     """
 
     index: int
@@ -59,6 +60,7 @@ class Piece:
     observations: float
     residual: list[float]
     vertices: Array
+    given: Array | None = None
 
     @property
     def straight(self) -> float:
@@ -120,8 +122,11 @@ class Page:
         self._sizes = np.empty(0)  # of each: what its distances from other ink are compared with [pixels]
         self._points = np.empty((0, 2), dtype=np.int64)  # of each piece where its points are, and how many
 
-    def add(self, strokes: list[Array]) -> range:
-        """Measure further strokes, each (n, 2) in pixels; returns their indices."""
+    def add(self, strokes: list[Array], given: Sequence[Array | None] = ()) -> range:
+        """Measure further strokes, each (n, 2) in pixels; returns their indices.
+
+        given: of each, if of any, which of its points it came with, where they are few and in equal steps.
+        """
         first = len(self._boxes)
         new = measure(strokes)
         points = np.split(new.points[: new.ends[-1]], new.ends[:-1])
@@ -138,6 +143,9 @@ class Page:
             if m[6] > 0:  # of a length, and not so tiny that nothing is left of its square
                 i = first + k
                 self.pieces[i] = _piece(i, i, points[k], m, residuals[k], new.vertices[k], self._dot)
+                few = given[k] if given else None
+                if few is not None:
+                    self.pieces[i] = replace(self.pieces[i], given=_among(points[k], few))
                 piece = self.pieces[i]
                 self._boxes[i], ends[k] = piece.box, piece.ends
                 self._sizes[i] = max(piece.scale, piece.extent / 2)
@@ -232,6 +240,12 @@ def page_of(sketch: Sketch) -> Page:
     page.add([s.points for s in sketch.strokes])
     page.settle()
     return page
+
+
+def _among(points: Array, given: Array) -> Array:
+    """Those of the given points that are left among a piece's."""
+    left = set(map(tuple, points.tolist()))
+    return given[[(x, y) in left for x, y in given.tolist()]]
 
 
 def _piece(

@@ -127,9 +127,11 @@ class Proposals:
         self._alone: dict[int, Alone] = {}
         self._stale: set[int] = set()
 
-    def add(self, strokes: list[NDArray[np.float64]]) -> range:
-        """Add strokes, (n, 2) [pixels]; returns their indices."""
-        new = self.page.add(strokes)
+    def add(
+        self, strokes: list[NDArray[np.float64]], given: Sequence[NDArray[np.float64] | None] = ()
+    ) -> range:
+        """Add strokes, (n, 2) [pixels]; returns their indices.  given: as of `Page.add`."""
+        new = self.page.add(strokes, given)
         self._settle([i for i in new if i in self.page.pieces])
         return new
 

@@ -121,8 +121,10 @@ class Recognizer:
         return self._add([stroke])[0]
 
     def _add(self, strokes: list[Stroke]) -> range:
-        things = [things_in(sampled(s.points)) for s in strokes]
-        new = iter(self._proposals.add([part for parts in things for part in parts]))
+        ink = [sampled(s.points) for s in strokes]
+        things = [things_in(points) for points, _ in ink]
+        given = [few for parts, (_, few) in zip(things, ink, strict=True) for _ in parts]
+        new = iter(self._proposals.add([part for parts in things for part in parts], given))
         keys = range(self._count, self._count + len(strokes))
         self._count = keys.stop
         for key, stroke, parts in zip(keys, strokes, things, strict=True):

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import cmath
 import math
+import statistics
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["sampled"]
+__all__ = ["Sampled", "sampled", "unevenness"]
 
 Array = NDArray[np.float64]
 
 ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 FEW = 24  # points of a stroke: in more a corner that lies between two of them is hardly cut
-FULL = 0.95  # of the usual step: a chord that is longer is straight
+FULL = 0.95, 0.9  # of the usual step: a chord that is longer is straight
 STEPS = 3  # full chords, at least, and a third of all: else the points are not in equal steps
 HAIRPIN = 1.2  # within so much of turning back [rad], a corner may be two: the end of something narrow
 OFF, LONGER = 0.05, 0.1  # of a step: how far ink is off its side's line, and a way longer than straight
@@ -25,15 +27,49 @@ ALIKE = 0.1  # parallel [rad]
 HALVINGS, NEWTON = 20, 8  # steps until a corner's cut, and its place, are found
 SHORT = 0.72, 0.9  # of a step: a chord of such a length has a corner, and not two
 LEG = 0.15  # of a step: what is shorter does not say where the ink comes from
+ASTRAY = 0.5  # of a step: what is off by more is no part of the course
 LOOP = 4.0  # rad: what turns by more altogether goes around something, and has its corners outward
 TURN, SPIKE = 0.35, 2.7  # rad: what turns by less is no corner, and by more none that one side alone can tell
 
 
-def sampled(points: Array) -> Array:
-    """A stroke's points, (n, 2) [pixels]: of very many some, and very few with the corners that they cut."""
+class Sampled(NamedTuple):
+    """A stroke's points, (n, 2) [pixels]: of very many some, and very few with the corners that they cut.
+
+    given: of few in equal steps of length along the ink those that it came with, else None.
+    """
+
+    points: Array
+    given: Array | None = None
+
+
+def sampled(points: Array) -> Sampled:
+    """A stroke, given its points, (n, 2) [pixels]."""
     if len(points) > 2 * ENOUGH:
-        return _thinned(points)
-    return _sharpened(points) if 4 < len(points) <= FEW else points
+        return Sampled(_thinned(points))
+    return _sharpened(points) if 4 < len(points) <= FEW else Sampled(points)
+
+
+def unevenness(parts: list[Array], middle: Array, axes: Array) -> float:
+    """How far the steps along an ellipse, between points that are in equal steps of length along the ink, are from
+    equal ones: root mean square, as a share of a step.
+
+    parts: the points of each stroke, (n, 2).  middle, axes: of the ellipse, half axes as columns, (2, 2) [pixels].
+    """
+    (p, q), (r, s) = axes.tolist()
+    det, (u, v) = p * s - q * r, middle.tolist()
+    squares, count = 0.0, 0
+    for points in parts:
+        at = [complex(s * (x - u) - q * (y - v), p * (y - v) - r * (x - u)) / det for x, y in points.tolist()]
+        steps = []
+        for a, b in pairwise(at):  # Simpson's rule for the length of the arc
+            begin, by = cmath.phase(a), cmath.phase(b * a.conjugate())
+            ways = [cmath.rect(1.0, begin + share * by) for share in (0.0, 0.5, 1.0)]
+            speeds = [math.hypot(q * w.real - p * w.imag, s * w.real - r * w.imag) for w in ways]
+            steps.append(abs(by) * (speeds[0] + 4 * speeds[1] + speeds[2]) / 6)
+        usual = max(statistics.median(steps), 1e-9)
+        squares += sum(min(abs(step / usual - 1), ASTRAY) ** 2 for step in steps)
+        count += len(steps)
+    return math.sqrt(squares / count)
 
 
 def _thinned(points: Array) -> Array:
@@ -44,7 +80,7 @@ def _thinned(points: Array) -> Array:
     return np.asarray(points[np.append(kept, len(points) - 1)])
 
 
-def _sharpened(points: Array) -> Array:
+def _sharpened(points: Array) -> Sampled:
     """Few points in equal steps of length along the ink, with the corners that lie between two of them.
 
     The step s says how long the ink between two points is; where these are nearer, at a distance d, it turns.
@@ -57,10 +93,15 @@ def _sharpened(points: Array) -> Array:
     chords = [b - a for a, b in pairwise(at)]
     lengths = [abs(c) for c in chords]
     step = max(lengths)
-    full = [d > FULL * step for d in lengths]
-    if sum(full) < max(STEPS, len(chords) / 3) or min(lengths) <= 0:
-        return points
-    step = sum(d for d in lengths if d > FULL * step) / sum(d > FULL * step for d in lengths)
+    for share in FULL:
+        full = [d > share * step for d in lengths]
+        if sum(full) >= max(STEPS, len(chords) / 3):
+            break
+    else:
+        return Sampled(points)
+    if min(lengths) <= 0:
+        return Sampled(points)
+    step = sum(d for d, whole in zip(lengths, full, strict=True) if whole) / sum(full)
     before, behind = _legs(at, chords, full)
     around = sum(_turn(*three) for three in zip(at, at[1:], at[2:], strict=False))
     inward = -math.copysign(1.0, around) if abs(around) > LOOP else 0.0
@@ -94,7 +135,7 @@ def _sharpened(points: Array) -> Array:
     for k, z in enumerate(at):
         out.append(z)
         out += corners.get(k, ())
-    return np.array([[z.real, z.imag] for z in out])
+    return Sampled(np.array([[z.real, z.imag] for z in out]), points)
 
 
 def _legs(
