@@ -10,7 +10,8 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Sequence
-from typing import NoReturn
+from types import FrameType
+from typing import Any
 
 from cli.arguments import Parser, PrintVersion, UsageError
 from cli.progress import error
@@ -119,16 +120,24 @@ def _join_negative_vectors(argv: Sequence[str]) -> list[str]:
 def _terminate_as_interrupt() -> Callable[[], object]:
     """Let SIGTERM unwind like Ctrl-C, so that nothing half-written stays behind; returns how to undo it.
 
-    An interrupt that comes within a callback of the garbage collector's or the import's, where Python can only print
-    and forget it, comes again: one Ctrl-C of a hundred went lost while the encoder's modules were loaded.
+    An interrupt that comes where it would go lost comes again a little later: while a module is imported, which may
+    turn it into an error of its own (whatever Cython compiled does), and within a callback of the garbage collector's,
+    where Python can only print and forget it.
     """
 
-    def interrupt(number: int, frame: object) -> NoReturn:
-        raise KeyboardInterrupt
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if not _is_importing(frame):
+            raise KeyboardInterrupt
+        _thread.start_new_thread(once_more, (signal.Signals(number),))
 
-    def once_more() -> None:
+    def once_more(number: signal.Signals = signal.SIGTERM) -> None:
         time.sleep(0.01)
-        _thread.interrupt_main(signal.SIGTERM)
+        if signal.getsignal(number) is not interrupt:  # all is done meanwhile
+            return
+        if hasattr(signal, "pthread_kill"):  # which also ends what waits
+            signal.pthread_kill(main_thread, number)
+        else:
+            _thread.interrupt_main(number)
 
     def unraisable(what: sys.UnraisableHookArgs) -> None:
         if what.exc_type is KeyboardInterrupt:
@@ -136,14 +145,30 @@ def _terminate_as_interrupt() -> Callable[[], object]:
         else:
             forgotten(what)
 
+    main_thread = _thread.get_ident()
+    before: dict[int, Any] = {}
     try:
-        before = signal.signal(signal.SIGTERM, interrupt)
+        before[signal.SIGTERM] = signal.signal(signal.SIGTERM, interrupt)
     except ValueError:  # not in the main thread, which alone is told
         return lambda: None
+    if (
+        signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    ):  # else whoever started this has it ignored
+        before[signal.SIGINT] = signal.signal(signal.SIGINT, interrupt)
     forgotten, sys.unraisablehook = sys.unraisablehook, unraisable
 
     def restore() -> None:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
         sys.unraisablehook = forgotten
 
     return restore
+
+
+def _is_importing(frame: FrameType | None) -> bool:
+    """Whether a frame is reached through an import."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False

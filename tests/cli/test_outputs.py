@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import signal
 import subprocess
@@ -115,6 +116,33 @@ def test_an_interrupt_within_a_callback_is_not_lost(
     assert main(["simulate", str(scene_file)]) == 130
     assert capsys.readouterr().err.splitlines()[-1].endswith("[interrupted]")
     assert sys.unraisablehook is hook
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_within_an_import_is_neither_lost_nor_another_error(
+    number: signal.Signals,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Modules that Cython compiled say that something could not be imported, whatever came between."""
+    (tmp_path / "compiled_so.py").write_text(
+        f"import os, time\ntry:\n    os.kill(os.getpid(), {int(number)})\n    time.sleep(0.05)\n"
+        "except BaseException:\n    raise ImportError('a part of it')\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "compiled_so", raising=False)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    def run(_: object) -> int:
+        importlib.import_module("compiled_so")
+        time.sleep(10)
+        return 0
+
+    monkeypatch.setattr("cli.commands.simulate.run", run)
+    assert main(["simulate", "scene.json"]) == 130
+    assert capsys.readouterr().err.splitlines()[-1].endswith("[interrupted]")
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_a_closed_pipe_is_no_traceback(scene_file: Path) -> None:
