@@ -19,7 +19,7 @@ __all__ = ["things_in"]
 
 Array = NDArray[np.float64]
 
-WAY = 2  # as in core/cut.c: from one thing to the next
+WAY = 2  # the kind of part, as ink_cut numbers them, that leads from one thing to the next
 CUT = 10.0  # nats that going on to another thing, or on the way to it, is rarer than lifting the pen
 LEAST = (20.0, 40.0)  # nats that no loop, and no line, is said in fewer
 OPEN = 0.2  # of its length: a stroke whose ends are further apart is no outline

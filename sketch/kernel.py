@@ -43,12 +43,9 @@ Point = tuple[float, float]
 Box = tuple[float, float, float, float]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
-COURSE, HEADS, LIFT, LENT = (
-    32,
-    4,
-    6,
-    1000,
-)  # as in core/course.c, core/heads.c, core/outline.h and core/lend.c
+COURSE, HEADS = 32, 4  # as in core/course.c and core/heads.c
+LENT = 1000  # points of a side that is lent, at most: MOST_STEPS of core/lend.c
+LIFT = 6  # numbers that a struct Lift of core/outline.h takes
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, *[_pointer] * 10)(
@@ -88,9 +85,8 @@ class Strokes(NamedTuple):
 
     Attributes:
         points: without repeats and hooks, (n, 2) [pixels].  ends: where each stroke's points end.
-        measure: (strokes, 8): length, box (4), distance of its ends, root mean square distance from the
-        centroid,
-            and across the longer axis [pixels].
+        measure: (strokes, 8): length, box (4), distance of its ends, root mean square distance from the centroid, and
+            across the longer axis [pixels].
         samples: (strokes, SAMPLES, 2), in equal steps of length.
         residual: (strokes, LEGS + 1): mean squared distance from its best k segments [pixels²].
         vertices: (strokes, BENDS + 1, BENDS + 1, 2): of those segments.
