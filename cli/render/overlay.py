@@ -40,13 +40,14 @@ def overlay(recognition: Recognition) -> Canvas:
     if sketch.picture is not None:
         page.lay(sketch.picture)
     page.ink([stroke.points for stroke in sketch.strokes], (120, 126, 138))
+    ids = {tuple(body.strokes or ()): body.id for body in recognition.scene.bodies}
     bodies = 0
     labels: list[tuple[Array, str, RGB]] = []
     for reading in sorted(recognition.readings, key=lambda reading: reading.kind == "unread"):  # on top
         color = _color(reading, bodies)
         bodies += reading.kind in BODIES
         _draw_reading(page, reading, color, [sketch.strokes[k].points for k in reading.strokes])
-        labels.append((_label_at(reading, sketch.strokes), _name(reading), color))
+        labels.append((_label_at(reading, sketch.strokes), _name(reading, ids), color))
     for at, text, color in labels:  # last, so that no outline crosses a name
         page.label(at, text, color)
     return canvas
@@ -81,11 +82,16 @@ def _draw_reading(page: _Page, reading: Reading, color: RGB, strokes: list[Array
         page.ink(strokes, color, width=2)
 
 
-def _name(reading: Reading) -> str:
-    """The kind, and how probable it is where there is a doubt."""
-    if reading.kind == "unread" or reading.score >= SURE:
-        return reading.kind
-    return f"{reading.kind} {reading.score:.0%}"
+def _name(reading: Reading, ids: dict[tuple[int, ...], str]) -> str:
+    """What it is, as notes and `--read` name it: a body by its id, all else by its strokes; and how probable that is
+    where there is a doubt.
+
+    ids: of bodies, by their strokes.
+    """
+    name = f"{reading.kind} {','.join(map(str, reading.strokes))}"
+    if reading.kind in BODIES:
+        name = f"{ids.get(reading.strokes, '')} {reading.kind}".strip()
+    return name if reading.kind == "unread" or reading.score >= SURE else f"{name} {reading.score:.0%}"
 
 
 def _label_at(reading: Reading, strokes: list[Stroke]) -> Array:

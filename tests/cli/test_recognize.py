@@ -10,10 +10,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from cli.main import main
 from cli.render.overlay import overlay
 from cli.render.style import CLEAN
+from cli.render.text import lettering
 from sim.scene import Scene
 from sketch import load_sketch, recognize
 from sketch.ink import Sketch, Stroke
@@ -172,6 +174,20 @@ def test_overlay_file(sketch_file: Path) -> None:
     picture = cv2.imread(str(out))
     assert picture.shape == (480, 640, 3)
     assert sorted(path.name for path in sketch_file.parent.iterdir()) == ["ball.json", "seen.png"]
+
+
+def test_overlay_names_bodies_by_their_ids_and_all_else_by_its_strokes(
+    sketch_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[str] = []
+
+    def told(text: str, size: int) -> NDArray[np.uint8]:
+        written.append(text)
+        return lettering(text, size)
+
+    monkeypatch.setattr("cli.render.overlay.lettering", told)
+    overlay(recognize(load_sketch(sketch_file)))
+    assert sorted(written) == ["anchor 1,2", "b1 rectangle", "b2 circle", "gravity 4"]
 
 
 def test_overlay_shows_unread_ink_in_the_signal_colour() -> None:
