@@ -213,7 +213,7 @@ def _on_cluster(address: str, tasks: list[Task], settings: dict[str, Any]) -> Ge
     try:
         from distributed import Client, as_completed
     except ModuleNotFoundError:
-        hint = "pip install 'sketchsim[cluster]'"
+        hint = "pip install distributed"
         raise UsageError("--scheduler: dask.distributed is not installed", hint) from None
     try:
         client = Client(address, timeout=10)

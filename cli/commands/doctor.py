@@ -21,10 +21,10 @@ NEEDED = {
     "shtab": "shtab",
 }
 EXTRAS = {
-    "pillow_heif": ("pillow-heif", "HEIC pictures: pip install 'sketchsim[scan]'"),
-    "pypdfium2": ("pypdfium2", "pages of PDF files: pip install 'sketchsim[scan]'"),
-    "svgelements": ("svgelements", "SVG drawings: pip install 'sketchsim[svg]'"),
-    "distributed": ("distributed", "batch on a cluster: pip install 'sketchsim[cluster]'"),
+    "pillow_heif": ("pillow-heif", "HEIC pictures: pip install pillow-heif"),
+    "pypdfium2": ("pypdfium2", "pages of PDF files: pip install pypdfium2"),
+    "svgelements": ("svgelements", "SVG drawings: pip install svgelements"),
+    "distributed": ("distributed", "batch on a cluster: pip install distributed"),
 }
 
 

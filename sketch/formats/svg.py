@@ -118,7 +118,7 @@ def _parsed(root: Element) -> Any:
         from svgelements import SVG
     except ModuleNotFoundError:
         raise InputError(
-            "", "SVG drawings need the extra 'svg'", "pip install 'sketchsim[svg]'", kind="extra"
+            "", "SVG drawings need the package svgelements", "pip install svgelements", kind="extra"
         ) from None
     try:
         return SVG.parse(io.BytesIO(tostring(_seen(root))), reify=True)

@@ -143,7 +143,9 @@ def _decode_pdf(data: bytes, page: int) -> NDArray[Any]:
 
 
 def _lacks_extra(what: str) -> InputError:
-    return InputError("", f"{what} need the extra 'scan'", "pip install 'sketchsim[scan]'", kind="extra")
+    return InputError(
+        "", f"{what} need packages of the extra 'scan'", "pip install pillow-heif pypdfium2", kind="extra"
+    )
 
 
 def _upright(picture: NDArray[Any], orientation: int) -> NDArray[Any]:

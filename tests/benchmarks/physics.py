@@ -160,7 +160,7 @@ def main(argv: list[str]) -> int:
     )
     options = parser.parse_args(argv)
     if options.plot and find_spec("matplotlib") is None:
-        raise UsageError("--plot: matplotlib is not installed", "pip install 'sketchsim[bench]'")
+        raise UsageError("--plot: matplotlib is not installed", "pip install matplotlib")
     results: dict[str, tuple[list[Point], list[Point]]] = {}
     known: dict[str, tuple[Scene, float, Case | None]] = {c.name: (c.scene, c.duration, c) for c in CASES}
     crowds: dict[str, tuple[Scene, float, Case | None]] = {

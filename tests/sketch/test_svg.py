@@ -174,8 +174,8 @@ def test_without_the_extra_the_error_names_it(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setitem(sys.modules, "svgelements", None)
     with pytest.raises(InputError) as e:
         load_sketch(svg('<circle r="9"/>'))
-    assert e.value.problem == "SVG drawings need the extra 'svg'"
-    assert e.value.hint == "pip install 'sketchsim[svg]'"
+    assert e.value.problem == "SVG drawings need the package svgelements"
+    assert e.value.hint == "pip install svgelements"
 
 
 @pytest.mark.parametrize(
