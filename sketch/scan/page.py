@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import crests, crisp_ink, darkness, distances, link, pieces
+from sketch.scan.binding import crests, crisp_ink, darkness, link, pieces
 from sketch.scan.broken import smooth_lines
 from sketch.scan.framed import within_frame
 from sketch.scan.punched import punched
@@ -17,12 +17,8 @@ from sketch.scan.ruling import FEWEST, drop_ruling
 from sketch.scan.table import TABLE, closed, darkest_channel, find_sheet
 
 __all__ = [
-    "FILL",
     "Page",
     "drop_specks",
-    "fill_grain",
-    "holes",
-    "hollow_fills",
     "ink_mask",
     "read_page",
 ]
@@ -43,14 +39,10 @@ NOISELESS = 1.0  # of 255: what is seen by a camera has more noise,
 SEEN = 1.5  # and this much though it was smoothed
 GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
-FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
 STAIN = 0.006  # of the picture's size, to either side: what is wider is a stain or filled
 EDGE = 3.0  # [pixels] to either side: ink ends within
 SOFT = 0.5  # of a stain's darkness: less than this changes there
 SPECK = 3.5  # pen widths
-GRAIN = 1.0  # squares of the pen width: larger holes are no grain,
-WITHIN = 1.0  # pen widths from the paper: nothing within one line, nor where two cross, is as far,
-PINHOLE = 0.3  # squares of the pen width: and nobody draws around a smaller hole
 FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
 CREST = 1.2  # of a line's darkness: what is next to it may be as dark
 LEAST_LINK = 3.0  # [pixels]: what is shorter and leads nowhere is a bump of an edge
@@ -357,61 +349,3 @@ def _measure(mask: Image, page: Page | None) -> _Pieces:
         if page.edge is not None:
             at_edge = np.maximum.reduceat(page.edge.ravel()[pixels], start) > 0
     return _Pieces(pixels, area, strength, extent, at_edge)
-
-
-def holes(mask: Image) -> list[tuple[NDArray[np.int32], int]]:
-    """The holes in the ink: the way around each on the ink, shape (n, 1, 2), and its area [pixels]."""
-    import cv2
-
-    ways, nesting = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    if nesting is None:
-        return []
-    # Pick's theorem: the area of the polygon is the pixels inside and half of those on it, less one
-    return [
-        (np.asarray(way, np.int32), round(cv2.contourArea(way) - len(way) / 2 + 1))
-        for way, (_, _, _, parent) in zip(ways, nesting[0], strict=True)
-        if parent >= 0
-    ]
-
-
-def hollow_fills(mask: Image, distance: NDArray[Any], pen: float) -> bool:
-    """Leave of filled shapes, in place, the outline that a pen `pen` pixels wide would draw; whether there are any.
-
-    distance: each ink pixel's distance to the paper, shape (h, w).
-    """
-    import cv2
-
-    if distance.max(initial=0) <= FILL * pen:
-        return False
-    core = (distance > FILL * pen).view(np.uint8)
-    reach = 2 * round(FILL * pen) + 1
-    fills = cv2.dilate(core, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach)))
-    mask[(fills > 0) & (distance > pen)] = 0
-    return True
-
-
-def fill_grain(mask: Image, distance: NDArray[Any], pen: float) -> bool:
-    """Fill the holes, in place, that the paper's grain leaves within a line; returns whether there were any.
-
-    A hole between lines has a line's width of ink around it, however small it is.  distance: each ink pixel's distance
-    to the paper, shape (h, w), likewise.
-    """
-    import cv2
-
-    small = [(way, area) for way, area in holes(mask) if area < GRAIN * pen * pen]
-    if not small:
-        return False
-    cv2.drawContours(mask, [way for way, _ in small], -1, 1, cv2.FILLED)
-    distances(mask, distance)
-    within = [
-        area < PINHOLE * pen * pen or distance[way[:, 0, 1], way[:, 0, 0]].max() < WITHIN * pen
-        for way, area in small
-    ]
-    between = [way for (way, _), grain in zip(small, within, strict=True) if not grain]
-    for way in between:
-        cv2.drawContours(mask, [way], -1, 0, cv2.FILLED)
-        cv2.drawContours(distance, [way], -1, 0, cv2.FILLED)
-        mask[way[:, 0, 1], way[:, 0, 0]] = 1
-    if between:
-        distances(mask, distance)
-    return any(within)

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import belt, distances
+from sketch.scan.fills import holes
 from sketch.scan.graph import Edge, Graph, Ink
-from sketch.scan.page import holes
 from sketch.scan.ways import Way
 
 __all__ = ["find_rings", "take_rings"]

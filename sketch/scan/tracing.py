@@ -15,11 +15,12 @@ from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.crossed import crossed
 from sketch.scan.faces import standing
 from sketch.scan.faint import drop_faint_marks
+from sketch.scan.fills import FILL, fill_grain, fill_hatching, hollow_fills
 from sketch.scan.grain import smoothed_grain
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.hidden import going_on
 from sketch.scan.overlaps import overlapping
-from sketch.scan.page import FILL, Page, drop_specks, fill_grain, hollow_fills, ink_mask, read_page
+from sketch.scan.page import Page, drop_specks, ink_mask, read_page
 from sketch.scan.prices import lines
 from sketch.scan.quantiles import percentile
 from sketch.scan.ridge import centre_on_ink
@@ -160,6 +161,8 @@ def _strokes(seen: Traced) -> list[Points]:
     if page is None or mask is None or skeleton is None or distance is None:
         return []
     seen.specks = drop_specks(mask, distance, pen)
+    if fill_hatching(mask, pen):
+        distance = distances(mask)
     if hollowed := hollow_fills(mask, distance, pen):
         distance = distances(mask)
     if fill_grain(mask, distance, pen) or hollowed:

@@ -18,7 +18,7 @@ from sketch.scan.binding import (
     heading,
     link,
 )
-from sketch.scan.page import fill_grain
+from sketch.scan.fills import fill_grain
 from sketch.scoring import misfit
 
 

@@ -135,6 +135,23 @@ def test_filled_shapes_are_their_outlines() -> None:
     assert assert_ring_and_box(sketch, 5.0) == []
 
 
+@pytest.mark.parametrize(("slope", "step"), [(1, 10), (2, 16), (0, 8)])
+def test_hatched_shapes_are_their_outlines(slope: int, step: int) -> None:
+    lines = np.zeros((HEIGHT, WIDTH), np.float32)
+    for c in range(-2 * WIDTH, 2 * WIDTH, step):
+        cv2.line(lines, (0, c), (WIDTH, c + slope * WIDTH), 1.0, 3, cv2.LINE_AA)
+    hatched = np.maximum(np.where(ink(filled=True) > 0.5, lines, 0), ink())
+    assert len(assert_ring_and_box(read_picture(encoded(drawn(hatched, noise=3))), 5.0)) == 0
+
+
+def test_what_stands_side_by_side_is_not_hatched() -> None:
+    some = ink()
+    for x in range(60, 660, 22):
+        cv2.rectangle(some, (x, 430), (x + 16, 520), 1.0, 4)
+    strokes = [s.points for s in read_picture(encoded(drawn(some, noise=3))).strokes]
+    assert sum(s[:, 1].min() > 415 for s in strokes) == 28
+
+
 def test_filled_shapes_among_lines_are_their_outlines() -> None:
     """The pen is as wide as its lines are, however much of the ink is filled."""
     some = ink()
