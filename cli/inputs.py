@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Loaded", "Way", "load", "load_bytes", "naming", "read", "recognize_bytes"]
 
-MAX_BYTES = 64 << 20  # of any input: a photo of 12 megapixels has 2 to 15 MB
+MAX_BYTES = 64 << 20  # of any input; as sketch.formats.MAX_PICTURE_BYTES, which scenes are spared importing
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ __all__ = ["close_gaps", "straighten"]
 
 Array = NDArray[np.float64]
 
+# By judgement; what they change is a note each, and happens only where it was asked for.
 LEVEL = math.radians(4)  # nobody draws a line more level than this by hand, and nobody means a ramp by less
 SIDED = 8  # sides up to which each is meant
 ALIKE = 1.1  # times that one wheel may be as large as another that was meant to be its equal

@@ -9,6 +9,7 @@ __all__ = ["centre_line"]
 
 Array = NDArray[np.float64]
 
+# By judgement, on outlines made of known strokes (tests/sketch/test_brush.py).
 FEWEST = 16  # corners of such an outline: ready shapes have fewer
 THICKEST = 0.25  # of the stroke's length; and
 OF_PAGE = 0.012  # of the page's diagonal: a broad pen, but no body

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 
 from sim.scene import InputError, parse_json
-from sketch.formats import arrows, strokes
+from sketch.formats import arrowheads, strokes
 from sketch.ink import Sketch
 
 __all__ = ["read"]
@@ -89,7 +89,7 @@ def _drawn(e: _Element) -> list[list[Point]]:
             end = "arrow" if e.type == "arrow" else None
         for tip, shaft in ((e.startArrowhead, path[::-1]), (end, path)):
             if tip is not None and len(path) > 1:
-                strokes_of.append(arrows.head(shaft[-2], shaft[-1]))
+                strokes_of.append(arrowheads.head(shaft[-2], shaft[-1]))
     elif e.type == "rectangle":
         strokes_of = [[(0, 0), (w, 0), (w, h), (0, h), (0, 0)]]
     elif e.type == "diamond":

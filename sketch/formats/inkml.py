@@ -25,7 +25,8 @@ VALUE = re.compile(
     r"""\s*(?P<order>[!'"]?)\s*(?P<value>[+-]?\s*(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|-?\#[0-9A-Fa-f]+|[TF*?])"""
 )
 NUMBERS = re.compile(r"[\d\s.,eE+-]*")
-ORDERS = {"!": 0, "'": 1, '"': 2}
+ORDERS = {"!": 0, "'": 1, '"': 2}  # of difference, by the sign before a value
+# Of the units that InkML has for time, and for a channel's resolution.
 MILLISECONDS = {"s": 1e3, "ms": 1.0, "us": 1e-3}
 PER_CENTIMETRE = {"1/cm": 1.0, "1/mm": 10.0, "1/in": 1 / 2.54, "1/m": 0.01, "1/pt": 72 / 2.54}
 

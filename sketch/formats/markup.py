@@ -10,8 +10,8 @@ from sim.scene import InputError
 
 __all__ = ["Element", "parse_xml"]
 
-MAX_BYTES = 24 << 20
-MAX_DEPTH = 200
+MAX_BYTES = 24 << 20  # as of stroke JSON: as XML the same ink is no smaller
+MAX_DEPTH = 200  # elements within elements: drawing programs nest groups ten deep or so
 KEPT = {"xml:id": "id", "xlink:href": "href"}  # of the attributes with a prefix
 
 
@@ -20,7 +20,6 @@ class Element:
     """An element, its name without the prefix of its namespace.
 
     attributes: those without a prefix, and xml:id and xlink:href without theirs.
-
     text: all characters directly inside.
     line: where it begins, from 1.
     """

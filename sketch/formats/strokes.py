@@ -19,7 +19,7 @@ from sketch.ink import Sketch, Stroke
 
 __all__ = ["from_objects", "read"]
 
-MAX_BYTES = 24 << 20
+MAX_BYTES = 24 << 20  # a point takes some 20 bytes: MAX_POINTS of them
 MAX_POINTS = 1_000_000  # a page of 200 strokes of 500 points has a tenth of that
 MAX_STROKES = 5_000  # in a machine there are some hundred; as many lines as this, all crossing, take minutes
 MAX_COORDINATE = 1e7  # pixels: squares and fourth powers of it stay exact enough

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import InputError
-from sketch.formats import arrows, brush, strokes
+from sketch.formats import arrowheads, brush, strokes
 from sketch.formats.markup import Element, parse_xml
 from sketch.ink import Sketch
 
@@ -45,9 +45,9 @@ LENGTHS = {
     "ellipse": ("cx", "cy", "rx", "ry"),
     "line": ("x1", "y1", "x2", "y2"),
 }
-MAX_ELEMENTS = 20_000
+MAX_ELEMENTS = 20_000  # drawn, as often as each is used: four times the strokes that are taken
 MAX_LENGTH = 2_000_000  # characters of all paths: a page of 200 strokes of 500 points has less
-MAX_DEPTH = 400
+MAX_DEPTH = 400  # of elements and of what they use: Python itself gives up at a thousand calls
 STEP = 3.0  # pixels between the points of a curve
 MOST = 400  # points of one curve
 
@@ -227,7 +227,7 @@ def _strokes(shape: Any, diagonal: float) -> list[list[list[float]]]:
         ends = (("marker-start", found[0][1::-1]), ("marker-end", found[-1][-2:]))
         for name, (before, tip) in ends:
             if values.get(name, "none") != "none":
-                head = arrows.head((before[0], before[1]), (tip[0], tip[1]))
+                head = arrowheads.head((before[0], before[1]), (tip[0], tip[1]))
                 found += [[list(point) for point in head]] if head else []
     return found
 

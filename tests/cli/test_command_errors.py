@@ -263,3 +263,10 @@ def test_a_picture_without_ink_is_empty(
     assert main([command, str(paper), "-o", str(out)]) == 3
     assert stderr_of(capsys) == ["error: no ink was found on the picture: nothing was drawn [empty]"]
     assert not out.exists()
+
+
+def test_the_command_takes_as_much_as_the_reader_of_sketches() -> None:
+    from cli import inputs
+    from sketch import formats
+
+    assert inputs.MAX_BYTES == formats.MAX_PICTURE_BYTES

@@ -10,7 +10,7 @@ import pytest
 
 from sim.scene import InputError
 from sketch import load_sketch, recognize
-from sketch.formats import arrows
+from sketch.formats import arrowheads
 
 Point = tuple[float, float]
 
@@ -125,7 +125,7 @@ def test_arrows_of_excalidraw_have_the_heads_that_are_shown(
 @pytest.mark.parametrize("shaft", [((0, 0), (100, 0)), ((10, 20), (70, 100)), ((5, 5), (0, -7))])
 def test_a_head_lies_alike_on_both_sides_of_its_shaft(shaft: tuple[Point, Point]) -> None:
     before, tip = (complex(*point) for point in shaft)
-    left, middle, right = (complex(*point) for point in arrows.head(*shaft))
+    left, middle, right = (complex(*point) for point in arrowheads.head(*shaft))
     assert middle == tip
     turns = [(barb - tip) / (before - tip) for barb in (left, right)]  # from the shaft, and of its length
     assert [abs(turn) for turn in turns] == pytest.approx([min(30 / abs(tip - before), 0.5)] * 2)
