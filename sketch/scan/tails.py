@@ -5,9 +5,12 @@ A skeleton shows that as an outline with a short line on it.  The pen drew both 
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.scan.binding import course_length
 from sketch.scan.ways import Way
 
 __all__ = ["with_tails"]
@@ -25,24 +28,30 @@ def with_tails(ways: list[Way], pen: float) -> list[Way]:
 
     pen: its width, in the pixels of the ways.
     """
-    closed = [(way, _length(way.points)) for way in ways if np.array_equal(way.points[0], way.points[-1])]
-    # of a tail one end is at a junction, the other free
-    loose = [way for way in ways if way.strain < ENDS and not np.array_equal(way.points[0], way.points[-1])]
-    lines = [(way, _length(way.points)) for way in loose]
+    reach = BESIDE * pen
+    closed = []
+    for way in ways:
+        if np.array_equal(way.points[0], way.points[-1]):
+            low, high = way.points.min(axis=0) - reach, way.points.max(axis=0) + reach
+            closed.append((way, course_length(way.points), (*low.tolist(), *high.tolist())))
     out = []
-    for tail, short in lines:
-        for outline, around in closed:
-            loop = np.hypot(*(tail.points[0] - tail.points[-1])) < OPEN * short
-            if loop or short > TAIL * around or not outline.ink.keys().isdisjoint(tail.ink):
+    for tail in ways:
+        ends = tail.points[[0, -1]].tolist()
+        # of a tail one end is at a junction, the other free
+        if tail.strain >= ENDS or ends[0] == ends[1]:
+            continue
+        short = course_length(tail.points)
+        if math.dist(*ends) < OPEN * short:
+            continue
+        for outline, around, (x0, y0, x1, y1) in closed:
+            if short > TAIL * around or not any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in ends):
                 continue
-            found = _joined(tail.points, outline.points[:-1], BESIDE * pen)
+            if not outline.ink.keys().isdisjoint(tail.ink):
+                continue
+            found = _joined(tail.points, outline.points[:-1], reach)
             if found is not None:
                 out.append(Way(found, {**outline.ink, **tail.ink}, outline.strain, frozenset(tail.ink)))
     return out
-
-
-def _length(points: Points) -> float:
-    return float(np.hypot(*np.diff(points, axis=0).T).sum())
 
 
 def _joined(tail: Points, outline: Points, reach: float) -> Points | None:

@@ -229,7 +229,9 @@ def small_pieces(graph: Graph | None) -> Graph | None:
 def _drawn(way: Way, seen: Traced) -> Way:
     """A way as it is handed on: begun at a corner, smooth, in the picture's pixels."""
     points = smooth(begin_at_corner(way.points, seen.pen), SMOOTHING)
-    ink = {name: (stretch + 0.5) * seen.scale - 0.5 for name, stretch in way.ink.items()}
+    ink = way.ink
+    if seen.scale != 1:
+        ink = {name: (stretch + 0.5) * seen.scale - 0.5 for name, stretch in ink.items()}
     return Way((points + 0.5) * seen.scale - 0.5, ink, way.strain)
 
 
