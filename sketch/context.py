@@ -12,7 +12,7 @@ from sketch.kernel import beside, depth
 from sketch.pins import PINNED, is_pinned
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
-from sketch.writing import LARGEST, WRITTEN
+from sketch.writing import LARGEST, WITHIN, WRITTEN
 
 __all__ = ["Context", "Pick"]
 
@@ -34,6 +34,7 @@ LETTER = 0.15  # of the page: larger bars are no letter
 TAP = 0.1  # of a bar's extent: what is smaller beside it is no stroke of a letter
 LARGE = 0.22  # of the page: a larger X is two rods that cross
 ROUGH = 20.0  # nats that a small polygon in several strokes leaves to be said about its ink, and is a letter by itself
+SCRAWLED = 70.0  # likewise an X, what its strokes have besides its bars among it
 DENSE = 64  # points of an open line that are compared with others, or so
 TWIG = 0.04  # of what is drawn: an open line, or an arrow, that is shorter is a slip too
 DOT = 0.012  # of what is drawn: nobody draws a smaller body
@@ -98,8 +99,11 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
         extent = row[4]
         if c.closed and extent < DOT * drawn:  # where the pen rested
             gains[k] -= 0.5 * (math.log(DOT * drawn / max(extent, 1e-9)) / DOT_SPREAD) ** 2
-        if c.rough > ROUGH and len(c.pieces) > 1 and extent < LARGEST * drawn:
-            gains[k] -= WRITTEN
+        if len(c.pieces) > 1 and extent < LARGEST * drawn:
+            if c.kind == "cross":
+                gains[k] -= WITHIN * (c.rough > SCRAWLED)
+            elif c.rough > ROUGH:
+                gains[k] -= WRITTEN
         if c.kind == "cross":
             large = extent > LARGE * size
             if bodies.around(c, 0.0):

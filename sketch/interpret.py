@@ -41,10 +41,12 @@ def interpret(
     readings: list[Reading],
     scale: float | None,
     gravity: tuple[float, float] | None,
+    wide: float,
     tidy: bool = False,
 ) -> Scene:
     """The scene that readings make; a small circle that is a pivot becomes one in `readings`.
 
+    wide: the longer side of the box around all that is drawn [pixels].
     scale: [pixels per metre], or None for the sketch's own.  gravity: [m/s²], y up, or None for the arrow's.
     tidy: whether to undo what the hand did to level sides, equal wheels and touching bodies.
     """
@@ -55,7 +57,7 @@ def interpret(
         for k, r in enumerate((r for r in readings if r.solid), start=1)
     ]
     bodies = Bodies(drawn)
-    joints = _pivots(sketch, bodies, view.pixels_per_metre, PIN * max(longer, _extent(sketch)), notes)
+    joints = _pivots(sketch, bodies, view.pixels_per_metre, PIN * max(longer, wide), notes)
     drawn = [d for d in drawn if d.reading.solid]
     _number(drawn, joints)
     for reading in readings:

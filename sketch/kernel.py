@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -420,11 +420,11 @@ def touch(one: Array, other: Array, at: Point, reach: float, near: float) -> boo
     return bool(_touch(address(one), len(one), address(other), len(other), *at, reach, near))
 
 
-def words(strokes: Strokes, names: Sequence[int]) -> list[list[int]]:
-    """Pairs of some strokes that may be in one word (see core/words.c)."""
-    which = np.array(names, dtype=np.int32)
-    rows = strokes.measure[which]
-    boxes, extents = rows[:, 1:5].copy(), 3 * rows[:, 6]
+def words(strokes: Strokes, sizes: Mapping[int, float]) -> list[list[int]]:
+    """Pairs of some strokes that may be in one word, given how large each, or its word, is [pixels] (see
+    core/words.c)."""
+    which, extents = np.array(list(sizes), dtype=np.int32), np.array(list(sizes.values()), dtype=float)
+    boxes = strokes.measure[which, 1:5].copy()
     ink = address(which), len(which), address(boxes), address(extents), address(strokes.samples)
     room = 16 * len(which)
     while True:

@@ -11,7 +11,7 @@ import numpy as np
 from sketch.kernel import ArrowFit, Shaft, course, fit_arrows, off_outline
 from sketch.outlines import GAP, RETRACE
 from sketch.pieces import Array, Page, Piece
-from sketch.scoring import FREE, PARAMETER, Fitted, misfit, misfit_of
+from sketch.scoring import FREE, PARAMETER, Fitted, meaningless, misfit, misfit_of
 
 __all__ = [
     "ASIDE",
@@ -41,6 +41,7 @@ STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to
 # of its length, what the ends of a loop are apart; of its extent, half of a wide one's thickness
 LOOP = (0.12, 0.2)
 OFF_BAR = 0.22  # of an X's half extent: ink further from its bars is said in fewer nats freely than as theirs
+JOINED = 0.3  # of a bar's length: as near to its end is what joins it
 MOSTLY = 0.6  # of an X's ink: what lies on its bars; a side that joins them is no longer than either
 RARE = 25.0  # nats that an open line is rarer than an outline
 ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning
@@ -113,13 +114,17 @@ def read_bar_of_two(page: Page, first: Piece, second: Piece) -> Fitted | None:
     squares, axes = np.linalg.eigh(spread)
     along = axes[:, 1]
     reaches = np.sort((np.array([*first.ends, *second.ends]) - middle) @ along)[[0, -1]]
-    scale = math.sqrt(3) / 4 * long  # half of the extent of a straight line so long
+    line = middle + reaches[:, None] * along
     square, count = float(squares[0]), first.observations + second.observations
     lacking = GAP * count * lift / long + RETRACE * count * max(again, 0.0) / long
+    scale = math.sqrt(3) / 4 * long  # half of the extent of a straight line so long
     bowed = 0.5 * square / (STRAIGHT * scale) ** 2
-    cost = RARE + 5 * PARAMETER + misfit(square / scale**2, count) + bowed + lacking
+    # each stroke is off it by its own writer's precision: a letter's bar is no part of a floor's side
+    far = off_outline(page.strokes, [first.stroke, second.stroke], line)
+    said = sum(misfit_of(p, its) for p, its in zip((first, second), far, strict=True))
+    cost = RARE + 5 * PARAMETER + said + bowed + lacking
     names = (first.index, second.index)
-    return Fitted("bar", names, cost, middle + reaches[:, None] * along)
+    return Fitted("bar", names, cost, line)
 
 
 def _turning(v: list[Vertex]) -> float:
@@ -164,11 +169,30 @@ def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fi
                 said = min(said, PARAMETER + _joined(page, parts[0], np.array([a, b, c, d])))
             cost = 6 * PARAMETER + said + odd[0] + odd[1]
             if cost <= most and (best is None or cost < best[0]):
-                best, most = (cost, a, b, c, d), cost
+                away = 0.0
+                if len(sides) > 2 and not single:
+                    away = _elsewhere(parts[part], bends[part], k, (c, d))
+                    away += _elsewhere(parts[other], bends[other], m, (a, b))
+                rough = off + odd[0] + odd[1] + meaningless(count * away / length)
+                best, most = (cost, a, b, c, d, rough), cost
     if best is None:
         return None
-    cost, a, b, c, d = best
-    return Fitted("cross", names, cost, np.array([a, b, c, d]), figure=np.array([a, b, d, a, c, b, c, d, c]))
+    cost, a, b, c, d, rough = best
+    figure = np.array([a, b, d, a, c, b, c, d, c])
+    return Fitted("cross", names, cost, np.array([a, b, c, d]), rough=rough, figure=figure)
+
+
+def _elsewhere(piece: Piece, bends: int, bar: int, other: tuple[Vertex, Vertex]) -> float:
+    """How much of a stroke of an X goes on beyond its bar to no end of the other [pixels].
+
+    bends: sides of the stroke; bar: which of them is its bar.
+    """
+    v = piece.corners(bends)
+    reach, found = JOINED * math.dist(*other), 0.0
+    for beyond in (v[bar::-1], v[bar + 1 :]):  # to where the stroke begins, and to where it ends
+        if min(math.dist(beyond[-1], end) for end in other) > reach:
+            found += sum(math.dist(a, b) for a, b in pairwise(beyond))
+    return found
 
 
 def _joined(page: Page, piece: Piece, bars: Array) -> float:

@@ -152,8 +152,9 @@ def _read(
     if math.isfinite(fit.extra):
         off = fit.residual[4]
         unlike = misfit(off + fit.extra, count) - misfit(off, count)
-        cost = fit.cost[4] + unlike + BOX + fit.lacks[4] + besides + cornered
-        out.append(fitted("rectangle", cost=cost, outline=fit.rectangle))
+        rough = fit.cost[4] + unlike
+        cost = rough + BOX + fit.lacks[4] + besides + cornered
+        out.append(fitted("rectangle", cost=cost, outline=fit.rectangle, rough=rough))
     least = min(f.cost for f in out)
     if (
         fit.gap < WIDE * fit.ink and FREEFORM + gaps + 3 * ARC < least

@@ -74,6 +74,11 @@ class Proposed:
     fits: Fits
 
     @cached_property
+    def pieces(self) -> frozenset[int]:
+        """The pieces of all groups."""
+        return frozenset(i for c in self.candidates for i in c.pieces)
+
+    @cached_property
     def rows(self) -> list[Row]:
         """Of the outline of each candidate its least x and y, greatest x and y, and extent [pixels]."""
         if not self.candidates:

@@ -183,7 +183,9 @@ class Recognizer:
             for reading in readings:
                 if kind == "ignore" and reading.kind == "unread" and reading.strokes[0] in strokes:
                     reading.forced = kind
-        scene = interpret(sketch, readings, scale, gravity, tidy)
+        boxes = page.strokes.measure[list(page.pieces), 1:5]
+        wide = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) if len(boxes) else 0.0
+        scene = interpret(sketch, readings, scale, gravity, wide, tidy)
         left = tuple(sorted({number[i] for i in elsewhere - read}))
         if left:
             arrow = Reading("unread", left, 0.0, np.empty((0, 2))).named

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from sketch.pieces import Piece
 
-__all__ = ["Fitted", "misfit", "misfit_of", "unread"]
+__all__ = ["Fitted", "meaningless", "misfit", "misfit_of", "unread"]
 
 Array = NDArray[np.float64]
 
@@ -95,7 +95,17 @@ def unread(piece: Piece) -> float:
         if said >= best:
             break
         best = min(best, said + misfit_of(piece, piece.residual[k]))
-    return STRANGE * min(piece.observations / LINE, 1.0) + best
+    return strange(piece.observations) + best
+
+
+def strange(count: float) -> float:
+    """Nats to say that so many observations were drawn that have no meaning."""
+    return STRANGE * min(count / LINE, 1.0)
+
+
+def meaningless(count: float) -> float:
+    """Nats to say so many observations freely, of ink that has no meaning in something that has one."""
+    return strange(count) + FREE * count
 
 
 def misfit(mean_square: float, count: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Collection, Mapping, Sequence, Set
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from sketch.pins import is_pinned
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
 
-__all__ = ["LARGEST", "WRITTEN", "written"]
+__all__ = ["LARGEST", "WITHIN", "WRITTEN", "written"]
 
 Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
@@ -27,12 +27,15 @@ WRITTEN = 60.0
 LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
 TALL = 2.5  # times that a thing in a word is as large as another: a capital as a small letter
 WITHIN = 2 * WRITTEN  # likewise of what is drawn over a body, which else is a mark on it
-MARKED = (
-    1.7  # times that it is as large as a letter there, at most: marks are larger than what is written at them
-)
-NEXT = 0.5  # of the larger stroke: between a letter and the next
+# times that it is as large as a letter there, at most: marks are larger than what is written at them
+MARKED = {"circle": 1.7, "cross": 1.25}
+# of the larger stroke: between a letter and the next, at most; a mark is set apart, and of two bars
+NEXT = {"circle": 0.5, "cross": 0.3}
+SAME = 0.1  # and between strokes of one
 CLEAR = 0.08  # of a body's narrower half: as far from its outline as what is written in it is, at least
 RADIUS = 0.5  # of a ring's extent: it is over what it touches
+SPOKE = 0.05  # of its length, what a spoke bends
+STRAIGHT = 0.9  # of its length, the distance of the ends of a letter's bar, at least
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
 HATCHED = WRITTEN  # nats that a stroke of hatching is no side of an outline
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
@@ -68,18 +71,20 @@ def written(
         for i in c.pieces
     }
     idle |= letters - pins
-    near = _near(page, marks.largest)
-    while True:
-        rows = _Rows(page, near, idle)
-        lost = {
-            i
-            for c, gain, row in chosen
-            if not rows.of.keys().isdisjoint(c.pieces) and gain < marks.loss(rows, c, row)
-            for i in c.pieces
-        }
-        if lost <= idle:
-            break
-        idle |= lost
+    near, fresh = _near(page, marks.largest, idle), idle
+    rows = _Rows(page, near, idle)
+    known = dict[Fitted, float]()  # what each loses
+    while fresh:
+        anew = {id(rows.of[i]) for i in fresh & rows.of.keys()}
+        lost = set[int]()
+        for c, gain, row in chosen:
+            if any(id(rows.of.get(i)) in anew for i in c.pieces):
+                known[c] = loss = marks.loss(rows, c, row)
+                lost.update(c.pieces if gain < loss else ())
+        fresh = lost - idle
+        if fresh:
+            idle = idle | fresh
+            rows = _Rows(page, near, idle)
     lone = [page.pieces[i] for i in sorted(idle)]
     lines = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
     measured = {
@@ -89,12 +94,12 @@ def written(
     touched = rows.of.keys() | measured | letters | hatched
     out = list(told)
     for n, p in enumerate(proposed):
-        if touched.isdisjoint(p.alone.pieces):
+        if touched.isdisjoint(p.pieces):
             continue
         own = out[n] = list(told[n])
         for k, (c, row) in enumerate(zip(p.candidates, p.rows, strict=True)):
             if own[k] > 0 and not touched.isdisjoint(c.pieces):
-                own[k] -= marks.loss(rows, c, row)
+                own[k] -= known[c] if c in known else marks.loss(rows, c, row)
                 own[k] -= MEASURE * (c.kind == "bar" and not measured.isdisjoint(c.pieces))
                 if c.closed and not letters.isdisjoint(c.pieces):
                     own[k] -= WITHIN * (c.kind != "circle" or pins.isdisjoint(c.pieces))
@@ -119,6 +124,9 @@ class _Marks:
         self._boxes, self._extents = where[:, :4], where[:, 4]
         self._known: dict[Fitted, list[Fitted]] = {}
         self._held: dict[tuple[int, Fitted], bool] = {}
+        self._rings: dict[Fitted, list[tuple[int, ...]]] | None = (
+            None  # of each body those on it and no other
+        )
 
     def in_bodies(self) -> set[int]:
         """The pieces of small outlines, of anything but a ring, within bodies: letters, as no body is there."""
@@ -141,29 +149,54 @@ class _Marks:
         A pivot is no letter. What else is drawn over a body is one if they are within that body too, and
         next to it.
         """
-        extent = where[4]
-        if extent >= self.largest or c.kind == "arrow":
+        if where[4] >= self.largest or c.kind == "arrow":
             return 0.0
-        beside = rows.beside(c.pieces, extent)
-        if beside and c.closed:  # what is written in a body does not make a letter of it
+        single = len(c.pieces) == 1
+        # as large as the strokes of a letter are, whatever was made of them
+        size = max(self._page.pieces[i].extent for i in c.pieces) if single or not c.closed else where[4]
+        beside = rows.beside(c.pieces, size)
+        near = rows.near_idle(c.pieces) if beside or single else []
+        halves = self._halves(c, near, rows.middles) if near and single and c.closed else []
+        if near and c.closed:  # what is written in a body does not make a letter of it
             x0, y0, x1, y1, _ = where
-            for i, (x, y) in rows.smaller(c.pieces, extent):
-                beside -= x0 < x < x1 and y0 < y < y1 and self._holds(c, i)
+            for i in set(near).difference(halves):
+                x, y = rows.middles[i]
+                tall = (
+                    x0 < x < x1 and y0 < y < y1 and size < TALL * self._page.pieces[i].extent <= TALL * size
+                )
+                beside -= tall and self._holds(c, i)
+        beside += sum(TALL * self._page.pieces[i].extent <= size for i in halves)
         if not beside or c.kind not in ("circle", "cross"):
             return WRITTEN * beside
-        under = self._under(c, extent)
-        if self.joins(c, extent):
+        under = self._under(c, where[4])
+        if self.joins(c, where[4]):
             return 0.0
         if not under:
             return WRITTEN * beside
-        within = [
-            i
-            for i in rows.idle(c.pieces, extent)
-            if extent < MARKED * self._page.pieces[i].extent and any(self._holds(b, i) for b in under)
-        ]
-        if within and c.kind == "circle" and self._is_pinned_again(under[0], c):
-            return WITHIN * len(within)
-        return WITHIN * sum(self._is_next(c, i) for i in within)
+        every = rows.idle(c.pieces, size * TALL / MARKED["circle"]) if c.kind == "circle" else []
+        on = {i for i in every if self._is_on(under, i) and not self._is_spoke(c, size, i)}.union(halves)
+        if on and c.kind == "circle" and self._is_pinned_again(under[0], c):
+            return WITHIN * len(on)
+        large = {i for i in near if size < TALL * self._page.pieces[i].extent}.union(halves)
+        return WITHIN * sum(
+            self._is_on(under, i) and not self._is_spoke(c, size, i) and self._is_next(c, size, i)
+            for i in large
+        )
+
+    def _halves(self, c: Fitted, near: list[int], middles: Mapping[int, Point]) -> list[int]:
+        """Of strokes those that go through an outline in one stroke, from side to side: of a theta."""
+        ring, (x, y), found = self._page.pieces[c.pieces[0]], c.middle, []
+        off = ring.extent / 3
+        for i in near:
+            u, v = middles[i]
+            if not (-off < u - x < off and -off < v - y < off):
+                continue
+            p, ink = self._page.pieces[i], self._page.strokes.samples[ring.stroke, :, None]
+            if p.gap > STRAIGHT * p.length:
+                gaps = np.hypot(*(ink - p.ends).transpose(2, 0, 1)).min(axis=0)
+                if gaps.max() < SAME * ring.extent:
+                    found.append(i)
+        return found
 
     def joins(self, c: Fitted, extent: float) -> bool:
         """Whether it is a ring over two things, bodies or open lines: a pivot, however rough."""
@@ -174,19 +207,39 @@ class _Marks:
 
     def _is_pinned_again(self, body: Fitted, c: Fitted) -> bool:
         """Whether another small ring than c lies over a body and no other: eyes, and no nails."""
-        return any(
-            ring.kind == "circle" and ring.pieces != c.pieces and self._under(ring, float(extent)) == [body]
-            for ring, extent in zip(self._bodies, self._extents, strict=True)
-            if extent < self.largest
-        )
+        if self._rings is None:
+            self._rings = {}
+            for ring, extent in zip(self._bodies, self._extents.tolist(), strict=True):
+                if ring.kind == "circle" and extent < self.largest:
+                    under = self._under(ring, extent)
+                    if len(under) == 1:
+                        self._rings.setdefault(under[0], []).append(ring.pieces)
+        return any(pieces != c.pieces for pieces in self._rings.get(body, ()))
 
-    def _is_next(self, c: Fitted, i: int) -> bool:
-        """Whether a stroke is as near to a reading's ink as that of the same letter, or of the next."""
-        samples = self._page.strokes.samples
-        large = max(self._page.pieces[j].extent for j in (i, *c.pieces))
-        other = samples[self._page.pieces[i].stroke, None, ::2]
-        inks = (samples[self._page.pieces[j].stroke, ::2, None] for j in c.pieces)
-        return any(float(np.hypot(*(ink - other).transpose(2, 0, 1)).min()) < NEXT * large for ink in inks)
+    def _is_next(self, c: Fitted, size: float, i: int) -> bool:
+        """Whether a stroke is as near to a reading's ink, and as large, as that of the same letter, or of the next."""
+        pieces, other = self._page.pieces, self._page.pieces[i]
+        reach = NEXT[c.kind] if size < MARKED[c.kind] * other.extent else SAME
+        reach *= max(size, other.extent)
+        near = [pieces[j].stroke for j in c.pieces if _boxes_near(pieces[j], other, reach)]
+        if not near:
+            return False
+        ink = self._page.strokes.samples
+        gaps = ink[near, ::2].reshape(-1, 1, 2) - ink[other.stroke, None, ::2]
+        return bool((gaps**2).sum(axis=2).min() < reach**2)
+
+    def _is_on(self, bodies: Sequence[Fitted], i: int) -> bool:
+        """Whether the middle of a stroke is within one of some bodies."""
+        x0, y0, x1, y1 = self._page.pieces[i].box
+        return any(depth((x0 + x1) / 2, (y0 + y1) / 2, body.outline) < 0 for body in bodies)
+
+    def _is_spoke(self, c: Fitted, size: float, i: int) -> bool:
+        """Whether a stroke beside a ring is straight, and points at its middle."""
+        p, (x, y), radius = self._page.pieces[i], c.middle, size / 3
+        (ax, ay), (bx, by) = p.ends
+        off = abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / max(p.gap, 1e-9)
+        away = math.hypot((ax + bx) / 2 - x, (ay + by) / 2 - y)
+        return c.kind == "circle" and p.straight < SPOKE and off < radius / 2 and away > radius
 
     def _holds(self, body: Fitted, i: int) -> bool:
         """Whether a stroke is within a body, clear of its outline: not a spoke."""
@@ -212,13 +265,35 @@ class _Marks:
         return self._known[c]
 
 
-def _near(page: Page, largest: float) -> dict[int, list[int]]:
-    """Of each stroke smaller than `largest` [pixels] the others that may be in one word with it."""
+def _near(page: Page, largest: float, idle: Set[int]) -> dict[int, list[int]]:
+    """Of each stroke smaller than `largest` [pixels] the others that may be in one word with it, or in one line.
+
+    What is between two words is as wide as the largest of their strokes.
+    """
     near: dict[int, list[int]] = {i: [] for i, p in page.pieces.items() if p.extent < largest}
-    for i, j in words(page.strokes, list(near)):
+    for i, j in words(page.strokes, {i: page.pieces[i].extent for i in near}):
         near[i].append(j)
         near[j].append(i)
+    tall = dict[int, float]()
+    for start in idle & near.keys():
+        if start not in tall:
+            word = _joined(near, start)
+            tall.update(dict.fromkeys(word, max(page.pieces[i].extent for i in word)))
+    for i, j in words(page.strokes, tall) if len(tall) > 1 else ():
+        if j not in near[i]:
+            near[i].append(j)
+            near[j].append(i)
     return near
+
+
+def _joined(near: dict[int, list[int]], start: int) -> list[int]:
+    """A stroke and all that are near it, near these, and so on."""
+    found, known = [start], {start}
+    for i in found:  # it grows meanwhile
+        new = [j for j in near[i] if j not in known]
+        known.update(new)
+        found += new
+    return found
 
 
 class _Rows:
@@ -226,45 +301,43 @@ class _Rows:
 
     Attributes:
         of: by stroke, the idle ones in its row: TALL times their extents, in order, and which they are.
+        middles: of the boxes around the idle ones [pixels].
     """
 
     def __init__(self, page: Page, near: dict[int, list[int]], idle: Set[int]) -> None:
         """near: of each small stroke the others that may be in one word with it."""
         self.of: dict[int, tuple[list[float], list[int]]] = {}
+        self._near = near
+        boxes = ((i, page.pieces[i].box) for i in near.keys() & idle)
+        self.middles = {i: ((x0 + x1) / 2, (y0 + y1) / 2) for i, (x0, y0, x1, y1) in boxes}
         self._idle = {i: TALL * page.pieces[i].extent for i in near.keys() & idle}
-        boxes = {i: page.pieces[i].box for i in self._idle}
-        self._middles = {i: ((x0 + x1) / 2, (y0 + y1) / 2) for i, (x0, y0, x1, y1) in boxes.items()}
         for start in self._idle:
             if start in self.of:
                 continue
-            its = self.of[start] = [], []
-            row = [start]
-            for i in row:  # it grows meanwhile
-                new = [j for j in near[i] if j not in self.of]
-                self.of.update((j, its) for j in new)
-                row += new
+            its: tuple[list[float], list[int]] = [], []
+            row = _joined(near, start)
+            self.of.update((i, its) for i in row)
             for tall, i in sorted((self._idle[i], i) for i in row if i in self._idle):
                 its[0].append(tall)
                 its[1].append(i)
 
     def beside(self, pieces: Sequence[int], extent: float) -> int:
         """How many idle strokes, large enough for one of some extent [pixels], some strokes stand in a row with."""
-        rows = {id(row): row for i in pieces if (row := self.of.get(i))}
-        own = sum(extent < self._idle[i] for i in pieces if i in self._idle)
-        return sum(len(tall) - bisect_right(tall, extent) for tall, _ in rows.values()) - own
+        large = sum(len(tall) - bisect_right(tall, extent) for tall, _ in self._rows(pieces))
+        return large and large - sum(extent < self._idle.get(i, 0.0) for i in pieces)
 
     def idle(self, pieces: Sequence[int], extent: float) -> list[int]:
         """Those strokes."""
-        rows = {id(row): row for i in pieces if (row := self.of.get(i))}
-        large = (i for tall, its in rows.values() for i in its[bisect_right(tall, extent) :])
+        large = (i for tall, its in self._rows(pieces) for i in its[bisect_right(tall, extent) :])
         return [i for i in large if i not in pieces]
 
-    def smaller(self, pieces: Sequence[int], extent: float) -> Iterator[tuple[int, Point]]:
-        """Those of them that are not larger themselves, each with its middle [pixels]."""
-        for tall, its in {id(row): row for i in pieces if (row := self.of.get(i))}.values():
-            for i in its[bisect_right(tall, extent) : bisect_right(tall, TALL * extent)]:
-                if i not in pieces:
-                    yield i, self._middles[i]
+    def _rows(self, pieces: Sequence[int]) -> Collection[tuple[list[float], list[int]]]:
+        """The rows that some strokes stand in."""
+        return {id(row): row for i in pieces if (row := self.of.get(i))}.values()
+
+    def near_idle(self, pieces: Sequence[int]) -> list[int]:
+        """The idle strokes next to some strokes."""
+        return [j for i in pieces for j in self._near.get(i, ()) if j in self._idle and j not in pieces]
 
 
 def _boxes_near(p: Piece, q: Piece, reach: float) -> bool:

@@ -3,7 +3,7 @@
 
 static const double BETWEEN = 1.0; /* of the larger one's extent: what is between the strokes of a word, at most */
 static const double UNLIKE =
-    4.0;  /* times that strokes of one word are as large as others: a letter's bar, and its stem */
+    6.0;  /* times that strokes of one word are as large as others: a letter's bar, and its stem */
 
 enum { STEP = 3 }; /* every so many samples of a stroke are compared with others */
 

@@ -10,7 +10,7 @@ import pytest
 from sketch.ink import Sketch, Stroke
 from sketch.marks import STRAIGHT, read_bar_of_two, read_cross
 from sketch.pieces import Page, page_of
-from sketch.scoring import misfit
+from sketch.scoring import meaningless, misfit
 
 Point = tuple[float, float]
 
@@ -59,3 +59,20 @@ def test_a_bar_gone_over_costs_how_far_both_strokes_are_off_it(off: float) -> No
     scale = math.sqrt(3) / 4 * 400
     bowed = 0.5 * (off / (STRAIGHT * scale)) ** 2
     assert apart - over == pytest.approx(misfit((off / scale) ** 2, count) + bowed, rel=1e-6)
+
+
+@pytest.mark.parametrize("way", [((400, 200), (300, 150)), ((300, 200), (400, 150))])
+def test_ink_that_an_x_does_not_need_leaves_it_rough(way: tuple[Point, Point]) -> None:
+    """Two bars, of which one goes on elsewhere for as long: a letter's stroke."""
+    bars = [((300, 300), (400, 200)), ((300, 200), (400, 300))]
+    plain = read_cross(page_with(*bars), (0, 1))
+    longer = [np.linspace(a, b, 60) for a, b in bars]
+    k = 0 if way[0][0] == 400 else 1
+    longer[k] = np.concatenate([longer[k] if k == 0 else longer[k][::-1], np.linspace(*way, 40)[1:]])
+    page = page_of(Sketch([Stroke(p) for p in longer], width=1280, height=720))
+    found = read_cross(page, (0, 1))
+    assert plain is not None
+    assert found is not None
+    spare = math.dist(*way) / sum(p.length for p in page.pieces.values())
+    count = spare * sum(p.observations for p in page.pieces.values())
+    assert found.rough == pytest.approx(plain.rough + meaningless(count), rel=0.03)

@@ -14,6 +14,7 @@ from sketch.ink import Sketch, Stroke
 from sketch.recognize import recognize
 from sketch.synthetic import HANDS, arrow, circle, cross, line, outline
 
+THIRTY, THETA = "30°", "θ"
 Array = np.ndarray
 Path = list[tuple[float, float]]
 HAND = HANDS["neat"]
@@ -28,6 +29,11 @@ def arc(x: float, y: float, a: float, b: float, first: float, last: float) -> Pa
 LETTERS: dict[str, list[Path]] = {
     "0": [arc(0.3, 0.5, 0.22, 0.5, -90, -450)],
     "1": [[(0.1, 0.2), (0.3, 0), (0.3, 1)]],
+    "3": [[*arc(0.28, 0.26, 0.2, 0.26, -140, 80), *arc(0.28, 0.74, 0.24, 0.26, -80, 140)]],
+    "4": [[(0.35, 0), (0.05, 0.65), (0.55, 0.65)], [(0.42, 0.35), (0.42, 1)]],
+    "=": [[(0.05, 0.45), (0.5, 0.45)], [(0.05, 0.7), (0.5, 0.7)]],
+    "°": [arc(0.15, 0.1, 0.1, 0.1, -90, -450)],
+    "θ": [arc(0.3, 0.5, 0.25, 0.5, -90, -450), [(0.06, 0.5), (0.54, 0.5)]],
     "A": [[(0.02, 1), (0.3, 0), (0.58, 1)], [(0.13, 0.62), (0.48, 0.62)]],
     "D": [[(0.08, 0), (0.08, 1)], [(0.08, 0), *arc(0.12, 0.5, 0.45, 0.5, -90, 90), (0.08, 1)]],
     "N": [[(0.05, 1), (0.05, 0), (0.5, 1), (0.5, 0)]],
@@ -58,7 +64,7 @@ def word(text: str, x: float, y: float, height: float, rng: np.random.Generator)
     return strokes
 
 
-@pytest.mark.parametrize("text", ["hello", "10 N", "v0", "mass", "slope", "100 m"])
+@pytest.mark.parametrize("text", ["hello", "10 N", "v0", "mass", "slope", "100 m", THIRTY, THETA])
 @pytest.mark.parametrize("height", [20, 40])
 @pytest.mark.parametrize("angle", [0.0, 1.1])
 def test_a_word_beside_a_machine_is_no_body(text: str, height: float, angle: float) -> None:
@@ -77,7 +83,7 @@ def test_a_word_beside_a_machine_is_no_body(text: str, height: float, angle: flo
     assert all(str(k) in notes for k in range(first, len(beside)))
 
 
-@pytest.mark.parametrize("text", ["a", "g", "D", "k", "A", "ma", "10", "kg"])
+@pytest.mark.parametrize("text", ["a", "g", "D", "k", "A", "ma", "10", "kg", "4", THIRTY, THETA])
 @pytest.mark.parametrize("seed", range(3))
 def test_what_is_written_in_a_body_is_no_mark_on_it(text: str, seed: int) -> None:
     """No anchor, no pivot, no body; and the marks that are there stay."""
@@ -90,6 +96,16 @@ def test_what_is_written_in_a_body_is_no_mark_on_it(text: str, seed: int) -> Non
     scene = read(frame, load, nail, anchor, words).scene
     assert [b.anchored for b in scene.bodies] == [False, True]
     assert [j.bodies for j in scene.joints] == [("b1", None)]
+
+
+@pytest.mark.parametrize("text", ["A", "N", "10"])
+@pytest.mark.parametrize("seed", range(3))
+def test_an_x_stays_an_anchor_beside_a_name(text: str, seed: int) -> None:
+    """A mark is set apart from what is written: as far as letters of one word never are."""
+    rng = np.random.default_rng(seed)
+    floor = outline(box(640, 500, 900, 100), HAND, rng)
+    scene = read(floor, cross((600, 500), 40, HAND, rng), word(text, 636, 480, 40, rng)).scene
+    assert [b.anchored for b in scene.bodies] == [True]
 
 
 @pytest.mark.parametrize("seed", range(3))
