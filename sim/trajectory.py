@@ -51,8 +51,8 @@ class Trajectory:
         body_ids: the scene's ids.
         energy: kinetic, potential and their sum [J], shape (n, 3); potential is zero at the scene's origin.
         events: what happened between the samples, in the order of time.
-        profile: what the engine did: names that end in _time are seconds, the others counts (SimProfile in core/sim.h);
-            empty for pymunk.
+        profile: what the engine did: names that end in _time are seconds, `separation` is metres, the others are counts
+            (SimProfile in core/sim.h); empty for pymunk.
     """
 
     times: Array
