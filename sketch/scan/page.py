@@ -62,17 +62,19 @@ class Page:
         darkness: 0 is bare paper, 255 is black, shape (h, w); 0 off the paper.
         noise: standard deviation of the bare paper's darkness.
         edge: not 0 off the sheet and near its edge, shape (h, w), or None where the sheet fills the picture.
+        rim: width of the strips along the picture's edges that count as paper [pixels].
     """
 
     darkness: Image
     noise: float
     edge: Image | None = None
+    rim: int = 0
 
     def smoothed(self, reach: int) -> Page:
         """The page, smoothed along its lines by `reach` pixels to either side."""
         dark = smooth_lines(self.darkness, self.noise, reach)
         paper = None if self.edge is None else (self.edge == 0).view(np.uint8)
-        return Page(dark, min(self.noise, max(_noise(dark, paper, 2), SEEN)), self.edge)
+        return replace(self, darkness=dark, noise=min(self.noise, max(_noise(dark, paper, 2), SEEN)))
 
 
 def read_page(picture: Image) -> Page:
@@ -114,7 +116,7 @@ def read_page(picture: Image) -> Page:
     rim = MARGIN * reduced
     for strip in (dark[:rim], dark[-rim:], dark[:, :rim], dark[:, -rim:]):
         strip[...] = 0
-    return Page(dark, _noise(dark, paper, reduced), edge)
+    return Page(dark, _noise(dark, paper, reduced), edge, rim)
 
 
 def _balance(colours: Image, paper: Image | None) -> Image | None:
@@ -255,11 +257,10 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     left_out = ["left out a frame all around, and what is beyond it"] if frame is not None else []
     left_out += ["left out what is printed from edge to edge of the sheet, or a crease"] if margins else []
     solid = np.flatnonzero((found.area > SOLID * found.extent.prod(axis=1)) & (found.span > HOLE * size))
-    if photographed and len(solid) > 1:
+    if photographed and len(solid):
         ends = np.cumsum(found.area)
-        holes = solid[
-            punched(mask, page.edge, [found.pixels[ends[k] - found.area[k] : ends[k]] for k in solid])
-        ]
+        discs = [found.pixels[ends[k] - found.area[k] : ends[k]] for k in solid]
+        holes = solid[punched(mask, page.edge, page.rim, discs)]
         found.strength[holes] = 0
         left_out += [f"left out {len(holes)} holes along an edge of the sheet"] if len(holes) else []
     held = found.at_edge & (found.span < (FINGER_MARK if frame is None else HUNG) * size)

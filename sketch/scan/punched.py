@@ -1,4 +1,7 @@
-"""Holes that were punched into a sheet for a binder: alike and round, along an edge of it, with nothing beyond."""
+"""Holes that were punched into a sheet for a binder: alike and round, along an edge of it, with nothing beyond.
+
+One that the picture's edge cuts need be neither round nor one of two: nobody fills half a shape, dark to that edge.
+"""
 
 from __future__ import annotations
 
@@ -17,18 +20,24 @@ IN_LINE = 0.1  # of how far they are apart: what one's distance to the edge may 
 RIM = 0.07  # of the picture's size: they are nearer to the edge
 
 
-def punched(mask: Image, edge: Image | None, pixels: list[NDArray[np.int32]]) -> list[int]:
+def punched(mask: Image, edge: Image | None, margin: int, pixels: list[NDArray[np.int32]]) -> list[int]:
     """Which pieces of ink are such holes.
 
     mask: of the ink.  edge: not 0 off the sheet and near its edge, or None where the sheet fills the picture.
+    margin: width of the strips along the picture's edges that count as paper [pixels].
     pixels: of each piece, as indices into the mask.
     """
     rim = RIM * (mask.shape[0] * mask.shape[1]) ** 0.5
-    discs = []
+    discs, cut = [], set[int]()
+    height, width = mask.shape
+    within = max(margin, 1)
     for k, piece in enumerate(pixels):
         y, x = np.divmod(piece, mask.shape[1])
         (left, right), (top, bottom) = ((int(v.min()), int(v.max())) for v in (x, y))
         wide, high = right - left + 1, bottom - top + 1
+        if min(left, top, width - 1 - right, height - 1 - bottom) <= within and max(wide, high) < 2 * rim:
+            cut.add(k)
+            continue
         full = np.pi / 4 * wide * high
         if abs(wide - high) > ROUND * wide or abs(len(piece) - full) > ROUND * full:
             continue
@@ -47,7 +56,8 @@ def punched(mask: Image, edge: Image | None, pixels: list[NDArray[np.int32]]) ->
             if free < rim and not beyond[:free].any():
                 discs.append((side, k, wide, free, y0 if side < 2 else x0))
     return sorted(
-        {
+        cut
+        | {
             k
             for side, k, wide, free, at in discs
             for other, n, width, clear, place in discs

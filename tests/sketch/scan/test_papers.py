@@ -228,6 +228,13 @@ def punched(floor: bool) -> np.ndarray:
     return picture
 
 
+@pytest.mark.parametrize("inward", [6, 9])
+def test_a_hole_that_the_pictures_edge_cuts_is_not_drawn(inward: int) -> None:
+    picture = drawn(ink(), noise=3)
+    cv2.circle(picture, (inward, 300), 10, (60, 75, 95), cv2.FILLED, cv2.LINE_AA)
+    assert_all(read_picture(encoded(picture)))
+
+
 def board(trembling: float) -> np.ndarray:
     """The drawing within a frame, a pen in the tray below, and what is on the wall beside it."""
     picture = np.full((HEIGHT + 100, WIDTH + 100, 3), 240, np.float64)
