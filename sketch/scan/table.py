@@ -79,7 +79,9 @@ def find_sheet(colours: Image) -> tuple[Image | None, NDArray[Any]]:
         inner[near & (cv2.dilate(weight, np.ones((EDGES, EDGES), np.uint8)) > 0)] = 1
     lit = bright >= TABLE * around
     white = whiteness >= TINGE * median(whiteness[::FEWER, ::FEWER][weight[::FEWER, ::FEWER] > 0])
-    return _whole(_brightest_region(inner & lit & white, bright)), around
+    sheet = _brightest_region(inner & lit & white, bright)
+    # up to its edge, where light changes for the table alone
+    return _whole((cv2.dilate(sheet.astype(np.uint8), square) > 0) & lit & white), around
 
 
 def _whole(sheet: NDArray[np.bool_]) -> Image:

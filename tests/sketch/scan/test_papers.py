@@ -294,6 +294,19 @@ def on_planks(sheet: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
     return desk
 
 
+def test_a_line_near_the_edge_of_the_sheet_is_drawn() -> None:
+    sheet = drawn(ink())
+    cv2.line(sheet, (60, HEIGHT - 5), (640, HEIGHT - 9), (40, 40, 40), 4, cv2.LINE_AA)
+    desk = np.full((HEIGHT + 140, WIDTH + 180, 3), 70.0)
+    desk[70:-70, 90:-90] = sheet
+    seen = desk[100:, 120:]  # the sheet goes on beyond the picture, above and at its left
+    large = cv2.resize(seen, None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC)
+    large += np.random.default_rng(1).normal(0, 3, large.shape)
+    strokes = [s.points for s in read_picture(encoded(np.clip(large, 0, 255).astype(np.uint8))).strokes]
+    assert len(strokes) == 5
+    assert max(np.ptp(s[:, 0]) for s in strokes) == pytest.approx(1160, abs=12)
+
+
 def assert_all_at(picture: np.ndarray, left: int, top: int) -> None:
     sketch = read_picture(encoded(picture))
     for stroke in sketch.strokes:
