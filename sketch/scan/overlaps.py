@@ -27,7 +27,7 @@ Points = NDArray[np.float64]
 SOLID = 0.9  # of its hull's area: what a convex outline drawn by hand has at least
 MOST_FACES = 24  # that hang together: more are a grid, or shading
 MOST_UNIONS = 100  # that are looked at, from each face
-MOST_BODIES = 120  # of those that are convex
+MOST_BODIES = 60  # of those that are convex, the likeliest
 ROWS = 32  # of a product of matrices at a time
 BODY = 20.0  # nats to say one more body,
 LEFT = 25.0  # to leave a line over,
@@ -53,8 +53,8 @@ def overlapping(sheet: Sheet, rings: list[Points], stretches: Stretches) -> list
     """
     out: list[Way] = []
     for knot in _knots(sheet, rings) if rings else ():
-        bodies = _unions(sheet, knot)
-        chosen = _fewest(bodies, sheet.length, knot.pivots) if 1 < len(bodies) <= MOST_BODIES else []
+        bodies = sorted(_unions(sheet, knot), key=lambda body: body.cost)[:MOST_BODIES]
+        chosen = _fewest(bodies, sheet.length, knot.pivots) if len(bodies) > 1 else []
         if len(chosen) > 1:
             some = [bodies[k] for k in chosen]
             out += _ways([body.outline for body in some], _grounds(sheet, some, stretches), stretches)
