@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sketch.scan.graph import RING, SIGHT, Edge, Graph
 from sketch.scan.outlines import SMOOTH, ends_cost
 
-__all__ = ["Face", "Outline", "Sheet", "bridged"]
+__all__ = ["GAP", "Face", "Outline", "Sheet", "bridged"]
 
 Points = NDArray[np.float64]
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sketch.scan.courses import Course, Links
 from sketch.scan.graph import RING, End, Graph
 from sketch.scan.junctions import LONELY, Branch, Junction, Pairs, turn_cost
+from sketch.scan.sheet import GAP
 
 __all__ = ["CRUMB", "Layout"]
 
@@ -19,17 +20,20 @@ Points = NDArray[np.float64]
 
 SHARED_SIDE = 0.45  # an outline may borrow this share of its length from ink that it rests on
 CRUMB = 2.0  # pen widths: a piece shorter than this that starts at other ink is part of that
+ACROSS = 8.0  # radii of a ring: what it is a pivot of is no wider there, or is not told by it
+BETWEEN = 0.3  # of the way from one line to the other: a ring so near to its middle is between them
 OWN_INK = 0.5  # and the lender has at least this much other ink, as a share of what it lends
 
 
 class Layout:
     """A skeleton's graph with its junctions, to be asked for the strokes along its courses.
 
-    pen: the width of the pen [pixels].
+    pen: the width of the pen [pixels].  rings: the middles and radii of all there are,
+    shape (n, 3).
     """
 
-    def __init__(self, graph: Graph, junctions: list[Junction], pen: float) -> None:
-        self.graph, self.pen = graph, pen
+    def __init__(self, graph: Graph, junctions: list[Junction], pen: float, rings: Points) -> None:
+        self.graph, self.pen, self.rings = graph, pen, rings
         self.branch_of = {branch.end: branch for junction in junctions for branch in junction.branches}
         self.junction_of = {branch.end: junction for junction in junctions for branch in junction.branches}
         self.meeting = graph.branches()
@@ -137,40 +141,80 @@ class Layout:
 
     def loan(self, course: Course) -> tuple[Points, list[int]] | None:
         """Other ink that leads from an open course's end back to its beginning: its points and edges."""
-        a, b = self.ends(course)
-        if course.closed or a < 0 or b < 0:
-            return None
         own = {e for e, _ in course.steps}
-        way, edges = self.shortest(b, a, SHARED_SIDE * self.length(course), without=own)
-        return None if a != b and not edges else (way, edges)
+        return None if course.closed else self._along(course, course, SHARED_SIDE * self.length(course), own)
+
+    def closing(self, course: Course) -> tuple[Points, list[int]] | None:
+        """The same, or the way straight across where there is a ring or hardly a gap between its ends."""
+        loan = self.loan(course)
+        if loan is None and not course.closed:
+            straight = self._straight(course, course, SHARED_SIDE * self.length(course))
+            return None if straight is None else (straight, [])
+        return loan
 
     def facing(self, sides: list[Course]) -> list[tuple[Course, Course]]:
         """The pairs of open courses that may be two sides of one outline, those first whose ends are the nearest to
-        each other, in proportion to their lengths."""
-        ends = np.array([[self.graph.outward(end)[0] for end in _ends(course)] for course in sides])
+        each other, in proportion to their lengths; the second goes on from where the first ends."""
+        ends = np.array([[self._tip(end) for end in _ends(course)] for course in sides])
         lengths = [self.length(course) for course in sides]
         found = []
         for i, j in combinations(range(len(sides)), 2):
             apart = np.hypot(*(ends[i][:, None] - ends[j]).transpose(2, 0, 1))
-            gap = min(apart[0, 0] + apart[1, 1], apart[0, 1] + apart[1, 0]) / (lengths[i] + lengths[j])
+            onward, back = apart[1, 0] + apart[0, 1], apart[0, 0] + apart[1, 1]
+            gap = float(min(onward, back)) / (lengths[i] + lengths[j])
             if gap < 2 * SHARED_SIDE:
-                found.append((float(gap), i, j))
-        return [(sides[i], sides[j]) for _, i, j in sorted(found)]
+                found.append((gap, i, j, bool(back < onward)))
+        return [(sides[i], sides[j].reversed() if turned else sides[j]) for _, i, j, turned in sorted(found)]
 
     def joined(self, first: Course, second: Course) -> list[Course]:
-        """Two open courses as one, where an end of one is at an end of the other, or other ink leads there."""
+        """Two open courses as one, where the second begins where the first ends, or the first where the second ends, or
+        where other ink leads there."""
         longest = SHARED_SIDE * (self.length(first) + self.length(second))
         own = {e for e, _ in first.steps + second.steps}
         out = []
-        for a in (first, first.reversed()):
-            for b in (second, second.reversed()):
-                start, goal = self.ends(a)[1], self.ends(b)[0]
-                if start < 0 or goal < 0:
-                    continue
-                way, edges = self.shortest(start, goal, longest, without=own)
-                if edges or start == goal:
-                    out.append(Course(a.steps + b.steps, [*a.via, way, *b.via]))
+        for a, b in ((first, second), (second, first)):
+            loan = self._along(a, b, longest, own)
+            if loan is not None:
+                out.append(Course(a.steps + b.steps, [*a.via, loan[0], *b.via]))
         return out
+
+    def across(self, first: Course, second: Course) -> list[Course]:
+        """Two open courses as one, where a ring or hardly a gap is between the end of one and the other's beginning."""
+        longest = SHARED_SIDE * (self.length(first) + self.length(second))
+        out = []
+        for a, b in ((first, second), (second, first)):
+            straight = self._straight(a, b, longest)
+            if straight is not None:
+                out.append(Course(a.steps + b.steps, [*a.via, straight, *b.via]))
+        return out
+
+    def _along(self, a: Course, b: Course, longest: float, own: set[int]) -> tuple[Points, list[int]] | None:
+        """The way along other ink from the end of one course to the beginning of another."""
+        start, goal = self.graph.node(_ends(a)[1]), self.graph.node(_ends(b)[0])
+        if start < 0 or goal < 0:
+            return None
+        way, edges = self.shortest(start, goal, longest, without=own)
+        return (way, edges) if edges or start == goal else None
+
+    def _straight(self, a: Course, b: Course, longest: float) -> Points | None:
+        """The way straight from the end of one course to another's beginning, if it is short or a ring is between."""
+        p, q = self._tip(_ends(a)[1]), self._tip(_ends(b)[0])
+        gap = q - p
+        wide = float(np.hypot(*gap))
+        if wide > longest:
+            return None
+        way = np.asarray(p + gap * np.linspace(0, 1, max(round(wide), 1) + 1)[1:-1, None])
+        if wide < GAP * self.pen:
+            return way
+        middles, radii = self.rings[:, :2], self.rings[:, 2]
+        along = (middles - p) @ gap / wide**2
+        off = np.hypot(*(middles - p - along[:, None] * gap).T)
+        between = (np.abs(along - 0.5) < BETWEEN) & (off < wide) & (wide < ACROSS * radii)
+        return way if between.any() else None
+
+    def _tip(self, end: End) -> Points:
+        """Where an edge ends."""
+        return np.asarray(self.graph.outward(end)[0])
 
     def borrow(self, course: Course, courses: list[Course]) -> None:
         """Close an outline that rests on other ink with both its ends: that ink is its missing side too.

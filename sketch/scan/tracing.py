@@ -189,7 +189,8 @@ def _strokes(seen: Traced) -> list[Points]:
     plain, certain = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
     whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen, names)
     rings = certain + doubtful
-    ways = Ways(graph, pen)
+    round_ways = [ring.points for ring in found]
+    ways = Ways(graph, pen, round_ways)
     first = ways.likeliest() + rings
     likeliest = [_drawn(way, seen) for way in first]
     if ways.is_net:
@@ -201,7 +202,6 @@ def _strokes(seen: Traced) -> list[Points]:
             known = {frozenset(way.ink) for way in likeliest + others}
             more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
             others += [_drawn(way, seen) for way in more]
-    round_ways = [ring.points for ring in found]
     sheets = [Sheet(edges, round_ways, pen) for edges in (drawn.edges, bridged(drawn, pen))]
     stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
     others += [_drawn(way, seen) for way in standing(sheets, stretches)]

@@ -7,6 +7,7 @@ strokes would make can tell; so the strokes of the next best pairings are given 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -47,16 +48,21 @@ class Way:
 
 
 class Ways:
-    """The strokes that a graph may be made of. pen: the width of the pen [pixels]."""
+    """The strokes that a graph may be made of.
 
-    def __init__(self, graph: Graph, pen: float) -> None:
+    pen: the width of the pen [pixels].  rings: all there are, each shape (n, 2).
+    """
+
+    def __init__(self, graph: Graph, pen: float, rings: Sequence[Points] = ()) -> None:
         self._junctions = junctions = find_junctions(graph, pen)
         self._graph = graph
         self.is_net = len(graph.edges) > NET  # shading, too: no way through it is better than another
         self._inner = {e for junction in junctions for e in junction.bridges}
         smoothest = [(junction, junction.pairs) for junction in junctions]
         self._choices = close_outlines(graph, junctions, pen)
-        self._layout = Layout(graph, junctions, pen)
+        around = [(ring.min(axis=0), ring.max(axis=0)) for ring in rings]
+        places = [(*(low + high) / 2, *(high - low)[:1] / 2) for low, high in around]
+        self._layout = Layout(graph, junctions, pen, np.array(places).reshape(-1, 3))
         self._links: Links = {}
         self._smoothest: Links = {}
         for junction, pairs in smoothest:
@@ -86,14 +92,13 @@ class Ways:
             else:
                 out.append(self._way(replace(course, borrowed=None), self._links))
         long = SIDE * self._layout.pen
-        sides = [
-            c
-            for c in known
-            if not c.closed and self._layout.length(c) > long and max(self._layout.ends(c)) >= 0
-        ]
+        sides = [c for c in known if not c.closed and self._layout.length(c) > long]
         for first, second in self._layout.facing(sides)[:MOST]:
-            for course in self._layout.joined(first, second):
-                out += [self._way(course, self._links), *self._closed(course, self._links)]
+            joined = self._layout.joined(first, second)
+            out += [self._way(course, self._links) for course in joined]
+            # closed it is the same from either
+            joined += self._layout.across(first, second)
+            out += self._closed(joined[0], self._links) if joined else []
         for course in follow(self._graph, self._smoothest, self._inner):
             signature = _signature(course)
             if signature not in seen and not self._layout.is_crumb(course):
@@ -119,7 +124,7 @@ class Ways:
 
     def _closed(self, course: Course, links: Links) -> list[Way]:
         """A course closed over other ink, if that is long enough to be a side or the ink where both its ends are."""
-        loan = self._layout.loan(course)
+        loan = self._layout.closing(course)
         if loan is None or (loan[1] and len(loan[0]) < SIDE * self._layout.pen):
             return []
         return [self._way(replace(course, borrowed=loan[0]), links)]
