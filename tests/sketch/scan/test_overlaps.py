@@ -112,6 +112,15 @@ def test_overlapping_outlines_are_those_drawn_and_share_their_ink_out(
     assert sum(map(len, least)) == len(set().union(*least))
 
 
+def test_of_more_unions_than_are_looked_at_the_likeliest_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    graph, rings = looked_at(chain(ROW))
+    every = [way.points for way in offered(graph, rings)]
+    monkeypatch.setattr("sketch.scan.overlaps.MOST_BODIES", 12)
+    few = [way.points for way in offered(graph, rings)]
+    assert few
+    assert all(any(np.array_equal(points, other) for other in every) for points in few)
+
+
 def test_without_a_ring_or_without_an_overlap_nothing_is_offered() -> None:
     lines = chain(ROW)
     graph, rings = looked_at(lines[:3])

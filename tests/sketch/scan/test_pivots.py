@@ -8,7 +8,10 @@ import pytest
 from numpy.typing import NDArray
 from test_tangles import Line, circle, inked, kinds, read
 
+from sketch.scan.binding import thin, trace
+from sketch.scan.graph import build_graph
 from sketch.scan.rings import find_rings
+from sketch.scan.ways import Ways
 
 
 def rings(lines: list[Line], pen: float) -> list[tuple[NDArray[np.float64], float]]:
@@ -63,3 +66,25 @@ def test_rods_that_end_in_their_rings_are_rods_however_many_they_are(pen: float)
     scene = read(lines, pen)
     assert kinds(scene) == ["circle"] * 5 + ["rectangle"] * 6
     assert len(scene.joints) == 10
+
+
+def test_two_sides_are_closed_to_an_outline_where_rings_are_between_their_ends() -> None:
+    pen, top, low = 4.0, 90.0, 350.0
+    lines: list[Line] = [[(200 + side, top), (200 + side, low)] for side in (-15, 15)]
+    lines += [[(60, 150), (400, 152)], [(60, 300), (400, 302)]]
+    pivots = [circle(200, y, 9) for y in (top + 8, low - 8)]
+    mask = (inked(lines + pivots, pen) > 0.5).astype(np.uint8)
+    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    graph = build_graph(trace(*thin(mask)), distance, pen)
+    found = [ring.points for ring in find_rings(mask, distance, pen)]
+
+    def closed(rings: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+        ways = [way.points for way in Ways(graph, pen, rings).others()]
+        tall = [points for points in ways if np.ptp(points[:, 1]) > 240 and np.ptp(points[:, 0]) < 40]
+        return [points for points in tall if np.array_equal(points[0], points[-1])]
+
+    assert len(found) == 2
+    assert not closed([])
+    (outline,) = closed(found)
+    x, y = outline.min(axis=0), outline.max(axis=0)
+    assert np.allclose([x, y], [(185, top), (215, low)], atol=3)
