@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -152,7 +152,7 @@ class Layout:
             return None if straight is None else (straight, [])
         return loan
 
-    def facing(self, sides: list[Course]) -> list[tuple[Course, Course]]:
+    def facing(self, sides: list[Course]) -> Iterator[tuple[Course, Course]]:
         """The pairs of open courses that may be two sides of one outline, those first whose ends are the nearest to
         each other, in proportion to their lengths; the second goes on from where the first ends."""
         ends = np.array([[self._tip(end) for end in _ends(course)] for course in sides])
@@ -164,7 +164,13 @@ class Layout:
             gap = float(min(onward, back)) / (lengths[i] + lengths[j])
             if gap < 2 * SHARED_SIDE:
                 found.append((gap, i, j, bool(back < onward)))
-        return [(sides[i], sides[j].reversed() if turned else sides[j]) for _, i, j, turned in sorted(found)]
+        for _, i, j, turned in sorted(found):
+            a, b = sides[i], sides[j].reversed() if turned else sides[j]
+            over_ink = [
+                min(self.ends(first)[1], self.ends(second)[0]) >= 0 for first, second in ((a, b), (b, a))
+            ]
+            if any(over_ink) or len(self.across(a, b)) == 2:
+                yield a, b
 
     def joined(self, first: Course, second: Course) -> list[Course]:
         """Two open courses as one, where the second begins where the first ends, or the first where the second ends, or

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,7 +93,7 @@ class Ways:
                 out.append(self._way(replace(course, borrowed=None), self._links))
         long = SIDE * self._layout.pen
         sides = [c for c in known if not c.closed and self._layout.length(c) > long]
-        for first, second in self._layout.facing(sides)[:MOST]:
+        for first, second in islice(self._layout.facing(sides), MOST):
             joined = self._layout.joined(first, second)
             out += [self._way(course, self._links) for course in joined]
             # closed it is the same from either
