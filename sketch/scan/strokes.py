@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import heapq
+import math
 from collections.abc import Iterator, Sequence
-from itertools import combinations, pairwise
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,7 @@ class Layout:
         self.junction_of = {branch.end: junction for junction in junctions for branch in junction.branches}
         self.meeting = graph.branches()
         self.lengths = [edge.length for edge in graph.edges]
+        self._widest = ACROSS * max(rings[:, 2].tolist(), default=0.0)
         self._ways: dict[tuple[End, End], Points] = {}
 
     def links(self, junction: Junction, pairs: Pairs) -> Links:
@@ -155,17 +157,18 @@ class Layout:
     def facing(self, sides: list[Course]) -> Iterator[tuple[Course, Course]]:
         """The pairs of open courses that may be two sides of one outline, those first whose ends are the nearest to
         each other, in proportion to their lengths; the second goes on from where the first ends."""
+        if len(sides) < 2:
+            return
         ends = np.array([[self._tip(end) for end in _ends(course)] for course in sides])
-        lengths = [self.length(course) for course in sides]
-        found = []
-        for i, j in combinations(range(len(sides)), 2):
-            apart = np.hypot(*(ends[i][:, None] - ends[j]).transpose(2, 0, 1))
-            onward, back = apart[1, 0] + apart[0, 1], apart[0, 0] + apart[1, 1]
-            gap = float(min(onward, back)) / (lengths[i] + lengths[j])
-            if gap < 2 * SHARED_SIDE:
-                found.append((gap, i, j, bool(back < onward)))
-        for _, i, j, turned in sorted(found):
-            a, b = sides[i], sides[j].reversed() if turned else sides[j]
+        lengths = np.array([self.length(course) for course in sides])
+        first, second = np.triu_indices(len(sides), 1)
+        apart = np.hypot(*(ends[first][:, :, None] - ends[second][:, None]).transpose(3, 1, 2, 0))
+        onward, back = apart[1, 0] + apart[0, 1], apart[0, 0] + apart[1, 1]
+        gap = np.minimum(onward, back) / (lengths[first] + lengths[second])
+        order = np.argsort(gap, kind="stable")
+        for k in order[: np.count_nonzero(gap < 2 * SHARED_SIDE)].tolist():
+            a, b = sides[first[k]], sides[second[k]]
+            b = b.reversed() if back[k] < onward[k] else b
             over_ink = [
                 min(self.ends(first)[1], self.ends(second)[0]) >= 0 for first, second in ((a, b), (b, a))
             ]
@@ -206,8 +209,8 @@ class Layout:
         """The way straight from the end of one course to another's beginning, if it is short or a ring is between."""
         p, q = self._tip(_ends(a)[1]), self._tip(_ends(b)[0])
         gap = q - p
-        wide = float(np.hypot(*gap))
-        if wide > longest:
+        wide = math.hypot(gap[0], gap[1])
+        if wide > longest or (wide > GAP * self.pen and wide > self._widest):
             return None
         way = np.asarray(p + gap * np.linspace(0, 1, max(round(wide), 1) + 1)[1:-1, None])
         if wide < GAP * self.pen:
