@@ -60,7 +60,6 @@ HANDS = {
     "shaky": Hand(tremor=0.007, drift=0.01, rounding=0.04, overshoot=0.015, parts=(1, 2)),
     "pieces": Hand(tremor=0.003, drift=0.01, rounding=0.03, hook=0.02, overshoot=0.03, parts=(2, 3, 4)),
     "sparse": Hand(tremor=0.001, drift=0.008, rounding=0.0, overshoot=0.01, parts=(1, 2), spacing=0.12),
-    "unsteady": Hand(tremor=0.002, drift=0.008, rounding=0.02, overshoot=0.02, parts=(1, 2), unsteady=0.7),
 }
 
 
