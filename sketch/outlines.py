@@ -187,7 +187,7 @@ def _stepping(given: list[Array | None], ellipse: tuple[Array, Array] | None) ->
     Between few points nobody sees how the ink turns; but in equal steps of length along it they are nearer where a
     corner lies between them, and equally far apart along something round.
     """
-    parts = [points for points in given if points is not None]
+    parts = [points for points in given if points is not None and len(points) > 1]
     steps = sum(map(len, parts)) - len(parts)
     if ellipse is None or len(parts) < len(given) or not MOST < steps < MANY:
         return MANY, 0.0, 0.0

@@ -8,6 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pages import box, kinds, ngon, read
 
+from sketch.outlines import read_outline
+from sketch.pieces import Page
 from sketch.sampling import sampled
 from sketch.synthetic import HANDS, circle, outline
 
@@ -82,6 +84,17 @@ def test_even_steps_are_round_and_uneven_ones_cornered(count: int) -> None:
             continue
         five = ngon(5, 400, 300, 100, rng.uniform(0, 6.3))
         assert kinds(read([in_steps(closed(five, rng.uniform(0, 0.9)), count)])) == ["5-gon"], seed
+
+
+def test_a_part_of_which_one_point_was_given_says_nothing_of_steps() -> None:
+    angle = np.linspace(0, 6.0, 41)
+    ring = np.column_stack([400 + 90 * np.cos(angle), 300 + 90 * np.sin(angle)])
+    arc, rest = ring[:33:4], ring[32:]
+    page = Page(1000.0)
+    page.add([arc, rest], [arc, rest[:1]])
+    page.settle()
+    best = min(read_outline(page, [(0, False), (1, False)]), key=lambda f: f.cost)
+    assert best.kind == "circle"
 
 
 def test_a_hexagon_said_by_its_corners_is_one() -> None:
