@@ -35,18 +35,11 @@ BOX = 17.0  # nats to say a rectangle: five parameters, and that it is the commo
 UNROUND = 0.115  # usual log of a drawn circle's length over its width, either way: nobody's circles are round
 EVENLY = 0.4  # usual share of a round outline's turning that is at a polygon's corners, beyond what is there anyway;
 TURNING = 0.12  # and how much either differs from that: all of a polygon's turning is
-FEW, MANY = (
-    4,
-    16,
-)  # steps of the points around an outline: in more one sees how it turns; in fewer not even that
-EVEN_STEPS, CORNERED = (
-    0.06,
-    0.12,
-)  # shares of a step: how uneven they usually are of what is round, and has corners;
+MANY = 12  # steps between points around an outline: where there are more, one sees how it turns, as in core/outline.c
+EVEN_STEPS = 0.06  # of a step: how uneven they usually are along something round,
+CORNERED = 0.12  # and around corners;
 STEPPING = 0.3  # and how much the log of it differs from either's
-CHANCE = (
-    8.0  # nats that a polygon's corners all lie halfway between points, or at them: its steps are even then
-)
+CHANCE = 3.0  # nats that all corners lie halfway between points, or at them: steps are even then
 ELLIPSE = 7.5  # nats that an ellipse takes beyond a circle: with 1.6 times as long as wide it is either
 FREEFORM = 32.0  # nats that an outline of any course, a hill or a cloud, is rarer than a polygon,
 ARC = 9.0  # and nats to say each of the arcs that it goes in: a bow beside the corner
@@ -143,7 +136,7 @@ def _read(
     for k in range(3, MOST + 1):
         total[k] += cornered
     sides, second = sorted(range(3, MOST_SIDES + 1), key=total.__getitem__)[:2]
-    evenly, straight = _turning(fit, sides, steps)
+    evenly, straight = _turning(fit, sides, max(steps, min(sum(map(len, parts)) - len(parts), MANY)))
     out = _round(fit, ellipse, fitted, gaps + evenly + even)
     if math.isfinite(fit.cost[sides]):
         outline, rough, ahead = fit.vertices(sides), fit.cost[sides], (second, total[second] - total[sides])
@@ -171,7 +164,8 @@ def _turning(fit: ClosedFit, sides: int, steps: int) -> tuple[float, float]:
     """Nats to say how much of the ink's turning is at a polygon's corners, of something round and of the polygon.
 
     Of few corners the distances tell enough, and beside many nothing is left to turn.
-    steps: between points, as of `_stepping`: all turning is at these, and as many as there are corners may be corners.
+    steps: between the points of its line, MANY where there are more: all turning is at these, and as many of them as
+        the polygon has corners may be its corners.
     """
     if not FEWEST <= sides <= MOST or not math.isfinite(fit.cost[sides]):
         return 0.0, 0.0

@@ -10,7 +10,7 @@ from pages import box, kinds, ngon, read
 
 from sketch.outlines import read_outline
 from sketch.pieces import Page
-from sketch.sampling import sampled
+from sketch.sampling import sampled, unevenness
 from sketch.synthetic import HANDS, circle, outline
 
 
@@ -84,6 +84,17 @@ def test_even_steps_are_round_and_uneven_ones_cornered(count: int) -> None:
             continue
         five = ngon(5, 400, 300, 100, rng.uniform(0, 6.3))
         assert kinds(read([in_steps(closed(five, rng.uniform(0, 0.9)), count)])) == ["5-gon"], seed
+
+
+def test_steps_are_even_along_what_is_round_and_uneven_around_corners() -> None:
+    middle = np.array([400.0, 300.0])
+    for axes in (np.diag([90.0, 90.0]), np.array([[120.0, -30.0], [70.0, 50.0]])):
+        angle = np.linspace(0.4, 6.7, 400)
+        ring = middle + np.column_stack([np.cos(angle), np.sin(angle)]) @ axes.T
+        assert unevenness([in_steps(ring, 10)], middle, axes) < 0.03
+        five = middle + 1.1 * (np.array(ngon(5, 0, 0, 1)) @ axes.T)
+        corners = [(x, y) for x, y in five.tolist()]
+        assert unevenness([in_steps(closed(corners, 0.3), 10)], middle, axes) > 0.06
 
 
 def test_a_part_of_which_one_point_was_given_says_nothing_of_steps() -> None:
