@@ -124,9 +124,8 @@ class _Marks:
         self._boxes, self._extents = where[:, :4], where[:, 4]
         self._known: dict[Fitted, list[Fitted]] = {}
         self._held: dict[tuple[int, Fitted], bool] = {}
-        self._rings: dict[Fitted, list[tuple[int, ...]]] | None = (
-            None  # of each body those on it and no other
-        )
+        # of each body the rings on it and no other
+        self._rings: dict[Fitted, list[tuple[int, ...]]] | None = None
 
     def in_bodies(self) -> set[int]:
         """The pieces of small outlines, of anything but a ring, within bodies: letters, as no body is there."""
@@ -202,8 +201,8 @@ class _Marks:
         """Whether it is a ring over two things, bodies or open lines: a pivot, however rough."""
         if c.kind != "circle":
             return False
-        lines = sum(is_pinned(line, long, c, extent) for line, long in self._lines)
-        return len(self._under(c, extent)) + lines > 1
+        bodies = len(self._under(c, extent))
+        return bodies > 1 or bodies + sum(is_pinned(line, long, c, extent) for line, long in self._lines) > 1
 
     def _is_pinned_again(self, body: Fitted, c: Fitted) -> bool:
         """Whether another small ring than c lies over a body and no other: eyes, and no nails."""
