@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-
-import numpy as np
+from collections.abc import Sequence
+from itertools import pairwise
 
 from sketch.scoring import Fitted
 
@@ -20,10 +20,16 @@ def is_pinned(line: Fitted, long: float, ring: Fitted, extent: float) -> bool:
     [pixels]."""
     if PINNED * extent >= long or not set(ring.pieces).isdisjoint(line.pieces):
         return False
-    x, y = ring.middle
-    gap = min(math.dist((x, y), end) for end in line.outline[[0, -1]].tolist())
+    at, points = ring.middle, line.outline.tolist()
+    gap = min(math.dist(at, points[0]), math.dist(at, points[-1]))
     if gap < extent or gap > long + extent:  # no point of the line is further from its ends than it is long
         return gap < extent
-    start, side = line.outline[:-1] - (x, y), np.diff(line.outline, axis=0)
-    t = np.clip(-(start * side).sum(axis=1) / np.maximum((side * side).sum(axis=1), 1e-9), 0, 1)
-    return bool(np.hypot(*(start + t[:, None] * side).T).min() < THROUGH * extent)
+    return any(_distance(at, a, b) < THROUGH * extent for a, b in pairwise(points))
+
+
+def _distance(at: Sequence[float], a: Sequence[float], b: Sequence[float]) -> float:
+    """How far a point is from the segment between two others."""
+    (x, y), (ax, ay), (u, v) = at, a, (b[0] - a[0], b[1] - a[1])
+    t = ((x - ax) * u + (y - ay) * v) / max(u * u + v * v, 1e-9)
+    t = min(max(t, 0.0), 1.0)
+    return math.hypot(ax + t * u - x, ay + t * v - y)
