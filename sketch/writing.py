@@ -177,6 +177,8 @@ class _Marks:
         if on and c.kind == "circle" and self._is_pinned_again(under[0], c):
             return WITHIN * len(on)
         large = {i for i in near if size < TALL * self._page.pieces[i].extent}.union(halves)
+        if c.kind == "cross":  # what is among its strokes joins its bars, and is no letter beside them
+            large = {i for i in large if not self._is_among(c, rows.middles[i])}
         return WITHIN * sum(
             self._is_on(under, i) and not self._is_spoke(c, size, i) and self._is_next(c, size, i)
             for i in large
@@ -226,6 +228,11 @@ class _Marks:
         ink = self._page.strokes.samples
         gaps = ink[near, ::2].reshape(-1, 1, 2) - ink[other.stroke, None, ::2]
         return bool((gaps**2).sum(axis=2).min() < reach**2)
+
+    def _is_among(self, c: Fitted, at: Point) -> bool:
+        """Whether a point is in the box around a reading's strokes."""
+        x0, y0, x1, y1 = zip(*(self._page.pieces[i].box for i in c.pieces), strict=True)
+        return bool(min(x0) < at[0] < max(x1) and min(y0) < at[1] < max(y1))
 
     def _is_on(self, bodies: Sequence[Fitted], i: int) -> bool:
         """Whether the middle of a stroke is within one of some bodies."""

@@ -26,7 +26,7 @@ Belt = tuple[float, Points, float, Points]  # as of `belt`
 Box = tuple[float, float, float, float]  # left, top, right, bottom [pixels]
 
 SMALLEST, LARGEST = 0.9, 4.5  # pen widths: the radius that the pen's middle went along, as in core/belt.c
-CHINK = 0.5  # squares of the pen width: a smaller hole is one between lines that cross, for all one can tell
+CHINK = 1.0  # squares of the pen width: a smaller hole is one between lines that cross, for all one can tell
 APART = 0.5  # pen widths: rings whose belts are nearer to each other have ink in common
 WITHIN = 0.2  # of roundness: what is less round by more than a ring around it, and has some ink of that, is half of it
 CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to be chance

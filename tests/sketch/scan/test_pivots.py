@@ -48,7 +48,7 @@ def test_half_of_a_ring_that_a_line_crosses_is_no_ring(pen: float, low: float) -
 
 @pytest.mark.parametrize("pen", [4.0, 5.5])
 def test_a_ring_with_hardly_a_hole_is_one_among_the_lines_of_its_rod(pen: float) -> None:
-    radius = 1.0 * pen
+    radius = 1.2 * pen
     sides: list[Line] = [[(200 + side * 1.2 * radius, 80), (200 + side * radius, 204)] for side in (-1, 1)]
     ((middle, _),) = rings([circle(200, 200, radius), *sides], pen)
     assert np.hypot(*(middle - 200)) < 2
