@@ -196,3 +196,14 @@ def test_eyes_in_a_ball_are_no_pivots() -> None:
     floor = outline(box(640, 500, 900, 60), HAND, rng)
     scene = read(floor, face, eyes, line(arc(500, 305, 22, 22, 20, 160), HAND, rng)).scene
     assert (len(scene.bodies), scene.joints) == (2, [])
+
+
+@pytest.mark.parametrize("scale", [0.4, 0.6, 0.8])
+def test_a_loose_side_of_an_x_makes_no_letter_of_it(scale: float) -> None:
+    """One that is drawn, or traced, apart from the bars: a small X on a long beam."""
+    beam = outline([(60, 280), (1220, 280), (1220, 370), (60, 370)], HAND, np.random.default_rng(3))
+    bars = [[(80, 20), (68, 50), (24, 88)], [(24, 40), (62, 78), (92, 84)]]
+    loose = [(67, 42), (69, 60), (77, 80)]
+    x = [(500, 300) + scale * np.array(path, float) for path in (*bars, loose)]
+    found = read(beam, x)
+    assert [body.anchored for body in found.scene.bodies] == [True]
