@@ -26,12 +26,12 @@ ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that t
 LACKS = 0.2  # of what a way of several pieces lacks: likewise
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
 FINE = 8  # steps from end to end: ways over other ink that are no further apart are one; as in core/lend.c
-STRAIGHT = 0.03  # of its length, what a stroke bends that may be a part of a straight line,
-ALIKE = 0.2  # and by how much more of it turns off the other [rad]
-BESIDE = 0.1  # of its length: as near as another part is
-HEAD_REACH = 0.5  # of a shaft: as near to its tip as its head comes,
-HEAD_SPAN = 1.2  # as far from it as it goes,
-HEAD_SIZE = 2.0  # and as large as it is
+STRAIGHT = 0.03  # of its length, what a stroke bends that may be one part of a straight line
+ALIKE = 0.2  # tangent of the angle between two parts of such a line, at most
+BESIDE = 0.1  # of its length: as near as another part of such a line is
+HEAD_REACH = 0.5  # of a shaft: as near to its tip as a stroke of the head comes
+HEAD_SPAN = 1.2  # of a shaft: as far from its tip as a stroke of the head goes
+HEAD_SIZE = 2.0  # shafts: a stroke of the head is no longer
 
 
 def closing_chains(page: Page, start: int) -> list[tuple[float, Chain]]:

@@ -49,10 +49,8 @@ class LooseEnds:
         known = len(self._rivals) > 0
         self.rivals = (address(self._rivals), address(self._from)) if known else (None, None)
         self._links = np.empty((MOST_STEPS, MOST_PARTS), dtype=np.int32)
-        self._parts, self._asked = (
-            np.empty(MOST_STEPS, dtype=np.int32),
-            np.empty(MOST_STEPS + 1, dtype=np.int32),
-        )
+        self._parts = np.empty(MOST_STEPS, dtype=np.int32)
+        self._asked = np.empty(MOST_STEPS + 1, dtype=np.int32)
         self._gaps, self._ink, self._back = np.empty((3, MOST_STEPS))
         out = (
             self._links,

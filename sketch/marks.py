@@ -28,13 +28,13 @@ __all__ = [
 MOST_BENDS = 5
 # of its half extent: usual spread of a rod's ink; what is off by much more is bent on purpose
 STRAIGHT = 0.02
-LIFT = 0.1  # of a bar's length: what lacks where the pen was lifted,
-ASIDE = 0.06  # and how far aside it went on, at most
+LIFT = 0.1  # of a bar's length: what lacks at most where the pen was lifted within it
+ASIDE = 0.06  # of a bar's length: how far aside the pen went on, at most, after it was lifted
 BEND = 3.0  # nats for each corner of a bar
 SHARP = 12.0  # nats that a right angle is rarer in a bar, one that folds it back twice that
 HEAD = 2.0  # nats an observation to say ink freely, where it lies within an arrow's head
-SHAFT = 0.55  # of the shaft: what the distance of an arrow's ink goes with,
-GAPS = 0.5  # and how far any of the arrow is from ink: a barb that nobody drew is no slip of the hand
+SHAFT = 0.55  # of the shaft: what the distance of an arrow's ink from it is measured in
+GAPS = 0.5  # of the shaft: what the distance of an arrow from the nearest ink is measured in: a barb is drawn
 # times that a shaft and the barbs of an arrow are drawn: the pen comes back along a barb
 OFTEN = (1.3, 2.0, 2.0)
 STRAY = 0.08  # of a mark's extent: how far beyond it ink may be that belongs to it

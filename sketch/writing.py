@@ -39,9 +39,9 @@ STRAIGHT = 0.9  # of its length, the distance of the ends of a letter's bar, at 
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
 HATCHED = WRITTEN  # nats that a stroke of hatching is no side of an outline
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
-MARK = 0.25  # of its length: as large as those are,
-AT_END = 0.05  # and as near to its ends,
-ON = 0.02  # while others that are nearer to it mean something else: hatching, a floor
+MARK = 0.25  # of a line's length: a mark at the end of a dimension line is as large
+AT_END = 0.05  # of a line's length: a mark at the end of a dimension line is as near to that
+ON = 0.02  # of a line's length: strokes so near to it, but not at its ends, mean something else: hatching, a floor
 
 
 def written(

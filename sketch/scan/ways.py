@@ -54,7 +54,7 @@ class Ways:
     """
 
     def __init__(self, graph: Graph, pen: float, rings: Sequence[Points] = ()) -> None:
-        self._junctions = junctions = find_junctions(graph, pen)
+        junctions = find_junctions(graph, pen)
         self._graph = graph
         self.is_net = len(graph.edges) > NET  # shading, too: no way through it is better than another
         self._inner = {e for junction in junctions for e in junction.bridges}
