@@ -44,7 +44,8 @@ static int32_t nearest(const double *xy, int32_t n, const double at[2], double *
 /* samples: of a piece, (SAMPLES, 2); xy: its n points, n > 1.  shape: its length and the distance of its ends.  ends: (2, 2),
  * where the others begin and where they end.  reach: as near to these its ink must come.  several: whether the others are
  * several pieces.  All in pixels.
- * Out: shape[0]: the step from point to point.  side: along it from their last end to their first, (MOST_STEPS + 1, 2). Returns how many points; 0 for none. */
+ * Out: shape[0]: the step from point to point.  side: along it from their last end to their first, (MOST_STEPS + 1, 2).
+ * Returns how many points; 0 for none. */
 INK_API int32_t ink_lend(const double *samples, const double *xy, int32_t n, double shape[2], const double *ends,
                          double reach, int32_t several, double *side) {
     const double all = shape[0],

@@ -14,17 +14,16 @@ __all__ = ["FILL", "fill_grain", "fill_hatching", "holes", "hollow_fills"]
 Image = NDArray[Any]  # uint8
 
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
-GRAIN = 1.0  # squares of the pen width: larger holes are no grain,
-WITHIN = 1.0  # pen widths from the paper: nothing within one line, nor where two cross, is as far,
-PINHOLE = 0.3  # squares of the pen width: and nobody draws around a smaller hole
+GRAIN = 1.0  # squares of the pen width: larger holes are no grain
+WITHIN = 1.0  # pen widths from the paper: nothing within one line, nor where two cross, is as far
+PINHOLE = 0.3  # squares of the pen width: nobody draws around a smaller hole
 GAP = 2.0  # pen widths: the lines of hatching are not farther apart
-LONG = (
-    6.0  # of its area, the square of half the way around a gap between such lines: four times as long as wide
-)
-FEWEST = 5  # such gaps of a drawing that has hatching,
-SOME = 3  # of one shape, which
-ALIGNED = 0.6  # lie along each other,
-SIGHT = 5  # [pixels] over which their direction is looked at
+# of its area, the square of half the way around a gap between such lines: four times as long as wide
+LONG = 6.0
+FEWEST = 5  # gaps between lines of hatching, at least, in a drawing that has some
+SOME = 3  # gaps between lines of hatching, at least, in one shape that has some
+ALIGNED = 0.6  # how far the gaps in a hatched shape lie along each other, at least: 1 is wholly
+SIGHT = 5  # [pixels] along the rim of a gap: its direction is looked at over so much
 THICK = 5.0  # pen widths from side to side of what is hatched: no two lines beside each other have as much
 SHARE = 0.15  # of what is hatched that is bare, at least
 

@@ -14,9 +14,9 @@ __all__ = ["within_frame"]
 
 Image = NDArray[Any]  # uint8
 
-STRAIGHT = 0.003  # of the frame's size, that its sides are off straight lines,
-MOSTLY = 0.9  # of their length: on the rest hangs what is no part of it
-ROUND = 0.03  # of its way around, that its corners are
+STRAIGHT = 0.003  # of the frame's size: how far its sides are off straight lines
+MOSTLY = 0.9  # of the sides' length is as straight as that: on the rest hangs what is no part of the frame
+ROUND = 0.03  # of the way around a frame: how far it may be off its four corners
 
 
 def within_frame(piece: Image, least: float) -> Image | None:
