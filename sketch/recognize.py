@@ -18,17 +18,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.scene import InputError, Scene
 from sketch.arrows import pointing
-from sketch.context import Context, Pick
+from sketch.context import Context
 from sketch.cutting import things_in
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
-from sketch.kernel import depth
-from sketch.marks import ASIDE, LIFT
+from sketch.merging import Chosen, merged
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page
 from sketch.placing import Placed, placed
@@ -41,9 +39,6 @@ from sketch.writing import written
 
 __all__ = ["Reading", "Recognition", "Recognizer", "recognize"]
 
-Array = NDArray[np.float64]
-
-SAME_PLACE = 0.2  # of a body's size: outlines nowhere further apart are one body, gone over
 KINDS = {"ellipse": "polygon", "free": "polygon", "cross": "anchor", "arrow": "gravity"}
 LENDING = 3  # times, at most, that readings are chosen anew without the sides that no body lent
 NOT_LENT = 1e3  # nats that these lose
@@ -62,6 +57,23 @@ class Recognition:
     def explain(self) -> str:
         """A person's account: each reading, from which strokes, why this and not the next."""
         return explain(self)
+
+
+@dataclass(frozen=True, eq=False)
+class _Explanation:
+    """What explains all the ink best, and what it was chosen from.
+
+    Attributes:
+        proposed: by each piece in the order of drawing, then by the caller.
+        told: the gains of all that was proposed, with what is around it [nats].
+        chosen: the best of it, each piece in one at most.
+        elsewhere: the pieces of arrows that mean something else than gravity.
+    """
+
+    proposed: list[Proposed]
+    told: list[list[float]]
+    chosen: list[Chosen]
+    elsewhere: set[int]
 
 
 def recognize(
@@ -155,59 +167,47 @@ class Recognizer:
     ) -> Recognition:
         """The page as it is now. The arguments are those of `recognize`; strokes count from 0 as they are now."""
         forced = normal_overrides(overrides, len(self._strokes))
-        keys = list(self._strokes)
-        pieces = [self._pieces[key] for key in keys]
-        said = {tuple(i for s in strokes for i in pieces[s]): kind for strokes, kind in forced.items()}
-        proposed, told, chosen, elsewhere = self._explained(said)
-        sketch = self.sketch
-        number = {i: s for s, of in enumerate(pieces) for i in of}
-        page = self._proposals.page
-        self._places = {c: self._places.get(c) or placed(page, c) for c, _ in chosen}
-        leads = {i: k for k, i in enumerate(page.pieces)}
-        others = range(len(leads), len(proposed))  # what was forced
-        readings = []
-        for c, gain in chosen:
-            rivals = _rivals(
-                c, gain, [(proposed[k], told[k]) for k in (*map(leads.__getitem__, c.pieces), *others)]
-            )
-            strokes = tuple(sorted({number[i] for i in c.pieces}))
-            readings.append(_reading(c, gain, strokes, rivals, self._places[c]))
-        readings.sort(key=lambda r: r.strokes)
-        read = {i for c, _ in chosen for i in c.pieces}
-        for i, stroke in enumerate(sketch.strokes):
-            if not read.issuperset(pieces[i]):
-                readings.append(Reading("unread", (i,), 0.0, stroke.points))
-        for reading in readings:
-            reading.forced = forced.get(reading.strokes)
-        for strokes, kind in forced.items():
-            for reading in readings:
-                if kind == "ignore" and reading.kind == "unread" and reading.strokes[0] in strokes:
-                    reading.forced = kind
+        pieces = [self._pieces[key] for key in self._strokes]
+        stroke = {i: s for s, of in enumerate(pieces) for i in of}
+        best = self._explained({tuple(i for s in of for i in pieces[s]): kind for of, kind in forced.items()})
+        sketch, page = self.sketch, self._proposals.page
+        readings = sorted(self._readings(best, stroke), key=lambda r: r.strokes)
+        read = {i for c in best.chosen for i in c.fit.pieces}
+        for s, its in enumerate(sketch.strokes):
+            if not read.issuperset(pieces[s]):
+                readings.append(Reading("unread", (s,), 0.0, its.points))
+        _mark_forced(readings, forced)
         boxes = page.strokes.measure[list(page.pieces), 1:5]
         wide = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) if len(boxes) else 0.0
         scene = interpret(sketch, readings, scale, gravity, wide, tidy)
-        left = tuple(sorted({number[i] for i in elsewhere - read}))
+        left = tuple(sorted({stroke[i] for i in best.elsewhere - read}))
         if left:
             arrow = Reading("unread", left, 0.0, np.empty((0, 2))).named
             scene.notes.append(f"{arrow}: an arrow at a body, or of axes, or with two heads is no gravity")
         return Recognition(sketch, scene, readings)
 
-    def _explained(
-        self, forced: Overrides
-    ) -> tuple[list[Proposed], list[list[float]], list[tuple[Fitted, float]], set[int]]:
-        """All that is proposed, with its gains; what of it explains the page best, likewise; and the pieces of arrows
-        that point at something else than gravity."""
+    def _explained(self, forced: Overrides) -> _Explanation:
+        """What is proposed, and what of it explains all the ink best. forced: by their pieces."""
         proposed = self._proposals.all()
         if forced:
             proposed = _with_forced(self._proposals.page, proposed, forced)
-        likely: list[Pick] = self._alone.best([p.alone for p in proposed])
+        likely = self._alone.best([p.alone for p in proposed])
         page = self._proposals.page
         told = self._context.told(proposed, likely, page.size, page.drawn)
         told, elsewhere = pointing(page, proposed, told, likely)
         told = written(page, proposed, told, likely, elsewhere)
+        told, chosen = self._lending(proposed, told)
+        return _Explanation(proposed, told, merged(chosen), elsewhere)
+
+    def _lending(
+        self, proposed: list[Proposed], told: list[list[float]]
+    ) -> tuple[list[list[float]], list[Chosen]]:
+        """The gains without what borrows a side of no body, and the best set of readings by them.
+
+        A body lends its side, an arrow or an X none: that is known of the whole answer alone.
+        """
         best = self._packed(proposed, told)
         for _ in range(LENDING):
-            # a body lends its side, an arrow or an X none: that is known of the whole answer alone
             lost = _not_lent([proposed[p].candidates[k] for p, k in best])
             if not lost:
                 break
@@ -218,12 +218,38 @@ class Recognizer:
                 for p, gains in zip(proposed, told, strict=True)
             ]
             best = self._packed(proposed, told)
-        chosen = [(proposed[p].candidates[k], told[p][k]) for p, k in best]
-        lost = _not_lent([c for c, _ in chosen])
-        chosen = [t for t in chosen if t[0].lender not in lost]
-        return proposed, told, _whole_arrows(_one_a_place(chosen)), elsewhere
+        chosen = [Chosen(proposed[p].candidates[k], told[p][k]) for p, k in best]
+        lost = _not_lent([c.fit for c in chosen])
+        return told, [c for c in chosen if c.fit.lender not in lost]
 
-    def _packed(self, proposed: list[Proposed], told: list[list[float]]) -> list[Pick]:
+    def _readings(self, best: _Explanation, stroke: Mapping[int, int]) -> list[Reading]:
+        """What was chosen, each with the others of the same ink as probabilities. stroke: of each piece."""
+        page = self._proposals.page
+        self._places = {c.fit: self._places.get(c.fit) or placed(page, c.fit) for c in best.chosen}
+        leads = {i: k for k, i in enumerate(page.pieces)}  # each piece proposes what its ink may be,
+        forced = range(len(leads), len(best.proposed))  # and the caller what comes after
+        readings = []
+        for c in best.chosen:
+            by = (*map(leads.__getitem__, c.fit.pieces), *forced)
+            rivals = _rivals(c, [(best.proposed[k], best.told[k]) for k in by])
+            score, others = scored(rivals)
+            place = self._places[c.fit]
+            readings.append(
+                Reading(
+                    KINDS.get(c.fit.kind, c.fit.kind),
+                    tuple(sorted({stroke[i] for i in c.fit.pieces})),
+                    score,
+                    place.outline,
+                    others,
+                    c.gain,
+                    margin=min(rival.behind for rival in rivals),
+                    rough=c.fit.rough,
+                    error=place.error,
+                )
+            )
+        return readings
+
+    def _packed(self, proposed: list[Proposed], told: list[list[float]]) -> list[tuple[int, int]]:
         """The best set of readings, each ink in one, given what all of them gain."""
         known, self._parts = self._parts, {}
         for p, gains in zip(proposed, told, strict=True):
@@ -255,97 +281,25 @@ def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> lis
     return [*out, proposing(extra, [FORCED] * len(extra))]
 
 
-# ---------------------------------------------------------------- the best explanation
+# ---------------------------------------------------------------- readings of what was chosen
 
 
-def _one_a_place(chosen: list[tuple[Fitted, float]]) -> list[tuple[Fitted, float]]:
-    """The chosen and their gains, with bodies that were drawn over one another in full joined to the best of them.
-
-    No two bodies have one place; that is known of the pair, and so after the search, which scores each by itself.
-    """
-    chosen = sorted(chosen, key=lambda t: -t[1])
-    closed = [k for k, (c, _) in enumerate(chosen) if c.closed]
-    scale = np.array([chosen[k][0].scale for k in closed])
-    at = np.array([chosen[k][0].middle for k in closed]).reshape(-1, 2)
-    far = SAME_PLACE * np.maximum(scale, scale[:, None])
-    close = np.abs(scale - scale[:, None]) <= far
-    close &= np.abs(at[:, None] - at).max(axis=2, initial=0.0) <= far
-    joined: set[int] = set()  # those that went into another
-    for a, b in np.argwhere(np.triu(close, 1)).tolist():
-        k, j = closed[a], closed[b]
-        kept, other = chosen[k], chosen[j]
-        if k in joined or j in joined or not _same_place(other[0], kept[0]):
-            continue
-        joined.add(j)
-        pieces = tuple(sorted((*kept[0].pieces, *other[0].pieces)))
-        chosen[k] = replace(kept[0], pieces=pieces), kept[1] + other[1]
-    return [chosen[k] for k in range(len(chosen)) if k not in joined]
+def _mark_forced(readings: list[Reading], forced: Overrides) -> None:
+    """Note in readings what the caller said of their strokes."""
+    ignored = {s for strokes, kind in forced.items() if kind == "ignore" for s in strokes}
+    for reading in readings:
+        reading.forced = forced.get(reading.strokes)
+        if reading.kind == "unread" and reading.strokes[0] in ignored:
+            reading.forced = "ignore"
 
 
-def _whole_arrows(chosen: list[tuple[Fitted, float]]) -> list[tuple[Fitted, float]]:
-    """The chosen and their gains, with arrows that were gone over joined, and shafts from which the pen was lifted.
-
-    That is known of the pair, and so after the search, as of bodies.
-    """
-    arrows = [t for t in chosen if t[0].kind == "arrow"]
-    others = [t for t in chosen if t[0].kind != "arrow"]
-    whole: list[tuple[Fitted, float]] = []
-    for arrow, gain in sorted(arrows, key=lambda t: -t[1]):
-        ends = arrow.outline.tolist()
-        for k, (kept, its) in enumerate(whole):
-            its_ends = kept.outline.tolist()
-            if max(map(math.dist, ends, its_ends)) < SAME_PLACE * math.dist(*its_ends):
-                whole[k] = replace(kept, pieces=tuple(sorted((*kept.pieces, *arrow.pieces)))), its + gain
-                break
-        else:
-            whole.append((arrow, gain))
-    bars = [t for t in others if t[0].kind == "bar" and len(t[0].outline) == 2]
-    at = np.array([bar.outline for bar, _ in bars]).reshape(-1, 2, 2)
-    for k, (arrow, gain) in enumerate(whole):
-        tail, tip = arrow.outline
-        lift = np.hypot(*(at - tail).transpose(2, 0, 1)).min(axis=1)
-        near = np.flatnonzero(lift < 1.001 * LIFT * np.hypot(*(at - tip).transpose(2, 0, 1)).max(axis=1))
-        for bar in (bars[n] for n in near.tolist()):
-            tail = _tail_beyond(arrow, bar[0])
-            if tail is not None and bar in others:
-                others.remove(bar)
-                pieces = tuple(sorted((*arrow.pieces, *bar[0].pieces)))
-                longer = replace(arrow, pieces=pieces, outline=np.array([tail, arrow.outline[1]]))
-                whole[k] = longer, gain + bar[1]
-                break
-    return others + whole
-
-
-def _tail_beyond(arrow: Fitted, bar: Fitted) -> Array | None:
-    """The far end of a bar that goes on where an arrow's shaft begins, in line with it."""
-    tail, tip = arrow.outline
-    near, far = sorted(bar.outline, key=lambda end: math.dist(end, tail))
-    shaft, whole = tip - tail, tip - far
-    long = float(np.hypot(*whole))
-    off = abs(whole[0] * shaft[1] - whole[1] * shaft[0]) / max(float(np.hypot(*shaft)), 1e-9)
-    along = float((near - far) @ whole) / long
-    goes_on = math.dist(near, tail) < LIFT * long and along > 0 and np.hypot(*shaft) < long
-    return far if goes_on and off < ASIDE * long else None
-
-
-def _same_place(a: Fitted, b: Fitted) -> bool:
-    if abs(a.scale - b.scale) > SAME_PLACE * max(a.scale, b.scale):
-        return False
-    if math.dist(a.middle, b.middle) > SAME_PLACE * a.scale:
-        return False
-    return all(
-        abs(depth(x, y, other.outline)) < SAME_PLACE * a.scale
-        for one, other in ((a, b), (b, a))
-        for x, y in one.outline.tolist()
-    )
-
-
-def _rivals(c: Fitted, gain: float, proposed: list[tuple[Proposed, list[float]]]) -> list[Rival]:
+def _rivals(chosen: Chosen, proposed: list[tuple[Proposed, list[float]]]) -> list[Rival]:
     """What the same ink as a reading's may mean else: of each meaning the best.
 
     proposed: by its pieces, with the gains.
     """
-    own = _meaning(c)
+    fit, gain = chosen
+    own = _meaning(fit)
     best: dict[tuple[str | int, bool], Rival] = {}
 
     def add(kind: str, meaning: str | int, less: float, alike: bool = False) -> None:
@@ -358,33 +312,17 @@ def _rivals(c: Fitted, gain: float, proposed: list[tuple[Proposed, list[float]]]
     add("unread", "unread", gain)
     for p, gains in proposed:
         for other, its in zip(p.candidates, gains, strict=True):
-            if other.pieces == c.pieces:
+            if other.pieces == fit.pieces:
                 meaning, (sides, more) = _meaning(other), other.next
                 if meaning != own:
-                    add(other.kind, meaning, gain - its, {c.kind, other.kind} == {"circle", "ellipse"})
+                    add(other.kind, meaning, gain - its, {fit.kind, other.kind} == {"circle", "ellipse"})
                 if sides and min(sides, MANY) != own:
                     add("polygon", min(sides, MANY), gain - its + more)
     return list(best.values())
 
 
-def _reading(c: Fitted, gain: float, strokes: tuple[int, ...], rivals: list[Rival], place: Placed) -> Reading:
-    """A chosen reading, with the others of the same ink as probabilities."""
-    score, others = scored(rivals)
-    return Reading(
-        KINDS.get(c.kind, c.kind),
-        strokes,
-        score,
-        place.outline,
-        others,
-        gain,
-        min(rival.behind for rival in rivals),
-        c.rough,
-        place.error,
-    )
-
-
-def _meaning(c: Fitted) -> str | int:
+def _meaning(fit: Fitted) -> str | int:
     """What a reading says: a mark, a circle, or so many sides; a rectangle is a polygon of four."""
-    if c.kind in ("rectangle", "polygon", "ellipse", "free"):
-        return min(len(c.outline), MANY)
-    return c.kind
+    if fit.kind in ("rectangle", "polygon", "ellipse", "free"):
+        return min(len(fit.outline), MANY)
+    return fit.kind
