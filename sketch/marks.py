@@ -67,7 +67,7 @@ def read_bar(piece: Piece) -> Fitted | None:
         cost += SHARP * _turning(piece.corners(k))
         if cost < best:
             best, segments = cost, k
-    return Fitted("bar", (piece.index,), best + RARE, piece.line(segments))
+    return _bar((piece.index,), best + RARE, piece.line(segments))
 
 
 def read_line(piece: Piece) -> Fitted | None:
@@ -78,7 +78,7 @@ def read_line(piece: Piece) -> Fitted | None:
     if piece.gap < 0.3 * piece.length:
         return None
     line = line_of_any_course(piece)
-    return None if line is None else Fitted("bar", (piece.index,), piece.unread + ANY_COURSE, line)
+    return None if line is None else _bar((piece.index,), piece.unread + ANY_COURSE, line)
 
 
 def line_of_any_course(piece: Piece) -> Array | None:
@@ -124,7 +124,11 @@ def read_bar_of_two(page: Page, first: Piece, second: Piece) -> Fitted | None:
     said = sum(misfit_of(p, its) for p, its in zip((first, second), far, strict=True))
     cost = RARE + 5 * PARAMETER + said + bowed + lacking
     names = (first.index, second.index)
-    return Fitted("bar", names, cost, line)
+    return _bar(names, cost, line)
+
+
+def _bar(names: tuple[int, ...], cost: float, line: Array) -> Fitted:
+    return Fitted("bar", names, cost, line, model=RARE + 2 * len(line) * PARAMETER)
 
 
 def _turning(v: list[Vertex]) -> float:
@@ -179,7 +183,8 @@ def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fi
         return None
     cost, a, b, c, d, rough = best
     figure = np.array([a, b, d, a, c, b, c, d, c])
-    return Fitted("cross", names, cost, np.array([a, b, c, d]), rough=rough, figure=figure)
+    bars = np.array([a, b, c, d])
+    return Fitted("cross", names, cost, bars, model=6 * PARAMETER, rough=rough, figure=figure)
 
 
 def _elsewhere(piece: Piece, bends: int, bar: int, other: tuple[Vertex, Vertex]) -> float:
@@ -245,7 +250,8 @@ def _arrow(page: Page, fit: ArrowFit, worse: float) -> Fitted | None:
     parts = zip((shaft, left, right), OFTEN, fit.ink, strict=True)
     wrong = sum(max(long - ink, ink - often * long, 0.0) for long, often, ink in parts)
     again = FREE * wrong / sum(fit.ink) * count + misfit(fit.bare / (GAPS * shaft) ** 2, count)
-    off, said = 0.0, RARE_ARROW + 4 * PARAMETER + again + fit.unlike
+    model = RARE_ARROW + 4 * PARAMETER  # tail and tip; the head is said by how unlike a head it is
+    off, said = 0.0, model + again + fit.unlike
     for p, square in zip(pieces, fit.off, strict=False):
         small = p.extent < 0.6 * shaft
         # an arrow whose ends meet is no loop, nor a barb that was drawn forth and back
@@ -254,13 +260,13 @@ def _arrow(page: Page, fit: ArrowFit, worse: float) -> Fitted | None:
         if said + off + (min(cost, free) if small else cost) > most:
             return None
         off += free if cost > free and small and _within(page, p, np.array(fit.head)) else cost
-    # tail and tip; the head is said by how unlike a head it is
-    cost = RARE_ARROW + 4 * PARAMETER + off + again + fit.unlike
+    cost = model + off + again + fit.unlike
     if cost > most:
         return None
     tip, left_end, right_end = fit.head
     figure = np.array([fit.tail, tip, left_end, tip, right_end, tip])
-    return Fitted("arrow", tuple(sorted(fit.names)), cost, np.array([fit.tail, tip]), figure=figure)
+    names, line = tuple(sorted(fit.names)), np.array([fit.tail, tip])
+    return Fitted("arrow", names, cost, line, model=model, figure=figure)
 
 
 def _within(page: Page, piece: Piece, head: Array) -> bool:

@@ -141,13 +141,14 @@ def _read(
     if math.isfinite(fit.cost[sides]):
         outline, rough, ahead = fit.vertices(sides), fit.cost[sides], (second, total[second] - total[sides])
         cost = total[sides] + besides + straight
-        out.append(fitted("polygon", cost=cost, outline=outline, rough=rough, next=ahead))
+        model = 2 * sides * CORNER
+        out.append(fitted("polygon", cost=cost, outline=outline, model=model, rough=rough, next=ahead))
     if math.isfinite(fit.extra):
         off = fit.residual[4]
         unlike = misfit(off + fit.extra, count) - misfit(off, count)
         rough = fit.cost[4] + unlike
         cost = rough + BOX + fit.lacks[4] + besides + cornered
-        out.append(fitted("rectangle", cost=cost, outline=fit.rectangle, rough=rough))
+        out.append(fitted("rectangle", cost=cost, outline=fit.rectangle, model=BOX, rough=rough))
     least = min(f.cost for f in out)
     if (
         fit.gap < WIDE * fit.ink and FREEFORM + gaps + 3 * ARC < least
@@ -156,7 +157,7 @@ def _read(
         bent = FREEFORM + gaps + min(misfit(fit.residual[k], count) + ARC * k for k in arcs)
         course = _course(parts) if bent < least else None
         if course is not None and is_simple(course):
-            out.append(fitted("free", cost=bent, outline=course))
+            out.append(fitted("free", cost=bent, outline=course, model=FREEFORM + 3 * ARC))
     return out
 
 
@@ -273,7 +274,8 @@ def _round(
     fitted: makes a reading of what all readings of the outline have in common.
     """
     x, y, r = fit.circle
-    circle = fitted("circle", cost=fit.circle_cost + ROUND + gaps, outline=np.array([x, y]) + r * _RING)
+    of_circle = partial(fitted, "circle", model=ROUND)
+    circle = of_circle(cost=fit.circle_cost + ROUND + gaps, outline=np.array([x, y]) + r * _RING)
     if ellipse is None:
         return [circle]
     middle, axes = ellipse
@@ -283,5 +285,6 @@ def _round(
     cost = fit.ellipse_cost + ROUND + gaps
     if cost + 0.5 * (longer / UNROUND) ** 2 < circle.cost:
         ring = middle + math.sqrt(area) * _RING
-        circle = fitted("circle", cost=cost + 0.5 * (longer / UNROUND) ** 2, outline=ring)
-    return [circle, fitted("ellipse", cost=cost + ELLIPSE, outline=middle + _RING @ axes.T)]
+        circle = of_circle(cost=cost + 0.5 * (longer / UNROUND) ** 2, outline=ring)
+    outline = middle + _RING @ axes.T
+    return [circle, fitted("ellipse", cost=cost + ELLIPSE, outline=outline, model=ROUND + ELLIPSE)]

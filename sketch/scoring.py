@@ -42,6 +42,7 @@ class Fitted:
         kind: "circle", "ellipse", "rectangle", "polygon", "free" (an outline of any course), "cross", "arrow" or "bar".
         pieces: indices of the pieces that it explains, in order.
         cost: description length [nats].
+        model: of these, what its own parameters take, whatever the ink [nats].
         outline: [pixels], as in `sketch.reading.Reading`.
         scale: of a closed outline: the geometric mean of its half axes [pixels].
         narrow: of a closed outline: the shorter of its half axes, as it was judged [pixels].
@@ -56,6 +57,7 @@ class Fitted:
     pieces: tuple[int, ...]
     cost: float
     outline: Array
+    model: float = 0.0
     scale: float = 0.0
     narrow: float = 0.0
     gap: float = 0.0
@@ -77,7 +79,7 @@ class Fitted:
     def together(self, costs: Mapping[int, float]) -> list[Fitted]:
         """The same with further pieces that it explains too, given what each costs: with all, or with one of them."""
         sets = [tuple(costs), *((j,) for j in costs)] if len(costs) > 1 else [tuple(costs)] if costs else []
-        own = self.outline, self.scale, self.narrow, self.gap, self.rough, self.next, self.figure
+        own = self.outline, self.model, self.scale, self.narrow, self.gap, self.rough, self.next, self.figure
         return [
             Fitted(
                 self.kind, tuple(sorted((*self.pieces, *more))), self.cost + sum(costs[j] for j in more), *own

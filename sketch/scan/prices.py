@@ -12,14 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.marks import RARE, RARE_ARROW
-from sketch.outlines import ARC, BOX, CORNER, ELLIPSE, FREEFORM, ROUND
 from sketch.pieces import Page, Piece
 from sketch.scan.binding import coarseness, course_length
 from sketch.scan.graph import Ink
 from sketch.scan.strokes import CRUMB
 from sketch.scan.ways import SIDE, Way
-from sketch.scoring import PARAMETER, STRANGE, Fitted
+from sketch.scoring import STRANGE, Fitted
 
 __all__ = ["Prices", "Taken", "lines"]
 
@@ -123,7 +121,7 @@ class Prices:
 
     def gain(self, c: Fitted, taken: Taken, least: float) -> float:
         """Nats that a reading saves against saying the ink that it takes freely; no more than `least` if less."""
-        said = _said(c)
+        said = min(c.model, c.cost)  # what is commoner than its kind costs less
         # what is off its ink is said as finely as that ink is said freely, in more strokes maybe, never less finely
         gain = taken.freely - said - (c.cost - said) * taken.finer
         # the strokes of a cross, and of an arrow in one stroke, are judged as a whole
@@ -174,19 +172,3 @@ def lines(ways: list[Way], pen: float) -> dict[int, int]:
 
 def _all_ink(ways: list[Way]) -> Ink:
     return {name: points for way in ways for name, points in way.ink.items()}
-
-
-def _said(fitted: Fitted) -> float:
-    """Nats to say a shape, without where its ink is."""
-    corners = len(fitted.outline)
-    least = {
-        "circle": ROUND,
-        "ellipse": ROUND + ELLIPSE,
-        "rectangle": BOX,
-        "polygon": 2 * corners * CORNER,
-        "free": FREEFORM + 3 * ARC,
-        "bar": RARE + 2 * corners * PARAMETER,
-        "cross": 6 * PARAMETER,
-        "arrow": RARE_ARROW + 4 * PARAMETER,
-    }
-    return min(least[fitted.kind], fitted.cost)
