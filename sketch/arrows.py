@@ -4,6 +4,7 @@ one place are a pair of axes, and a line with a head at either end says how long
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from sketch.pieces import Page, Piece
 from sketch.proposals import Proposed, Row
 from sketch.scoring import Fitted
 
-__all__ = ["ONE_ARROW", "Pick", "pointing"]
+__all__ = ["Pick", "likeliest_arrow", "pointing", "prefer_arrow"]
 
 Array = NDArray[np.float64]
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
@@ -50,48 +51,57 @@ def pointing(
     arrows = [proposed[n].candidates[k] for n, k in every]
     chosen = [(proposed[n].candidates[k], proposed[n].rows[k]) for n, k in likely]
     losses = dict(zip(every, _losses(page, arrows, chosen), strict=True))
-    first = _first(proposed, told, likely, losses)
-    its, most = set[int](), math.inf
-    if first is not None:
-        its.update(proposed[first[0]].candidates[first[1]].pieces)
-        most = told[first[0]][first[1]] - losses[first] + ONE_ARROW - SECOND
-    out = list(told)
-    for (n, k), loss in losses.items():
-        out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
-        own[k] -= loss
-        if its and its.isdisjoint(proposed[n].candidates[k].pieces):
-            own[k] = min(own[k] - ONE_ARROW, most)
-        elif its:
-            own[k] += ONE_ARROW
     other = {
         i
         for pick in likely
         if losses.get(pick) == math.inf
         for i in proposed[pick[0]].candidates[pick[1]].pieces
     }
-    return out, other
-
-
-def _first(
-    proposed: list[Proposed],
-    told: list[list[float]],
-    likely: list[Pick],
-    losses: dict[Pick, float],
-) -> Pick | None:
-    """The likeliest arrow: of those that are likely, or else on ink that is nothing likelier."""
-    free = [pick for pick, loss in losses.items() if loss < math.inf]
-    arrows = [pick for pick in free if pick in likely]
-    if not arrows:
-        others = (proposed[n].candidates[k] for n, k in likely if told[n][k] > 0)
-        taken = {i for c in others if c.kind != "bar" for i in c.pieces}
-        arrows = [(n, k) for n, k in free if taken.isdisjoint(proposed[n].candidates[k].pieces)]
 
     def gain(pick: Pick) -> float:
         n, k = pick
         long = math.dist(*proposed[n].candidates[k].outline.tolist())
         return min(told[n][k], SURE) - losses[pick] + LONGEST * math.log(max(long, 1e-9))
 
-    return max(arrows, key=gain, default=None)
+    free = [pick for pick, loss in losses.items() if loss < math.inf]
+    first = likeliest_arrow(proposed, told, free, likely, gain)
+    rarer = list(told)
+    for (n, k), loss in losses.items():
+        rarer[n] = own = list(told[n]) if rarer[n] is told[n] else rarer[n]
+        own[k] -= loss
+    if first is not None:
+        most = rarer[first[0]][first[1]] + ONE_ARROW - SECOND
+        prefer_arrow(proposed, rarer, every, first, most)
+    return rarer, other
+
+
+def likeliest_arrow(
+    proposed: list[Proposed],
+    told: list[list[float]],
+    arrows: list[Pick],
+    likely: list[Pick],
+    gain: Callable[[Pick], float],
+) -> Pick | None:
+    """The arrow that gains the most, of some: of those that are likely, or else of those on ink of nothing likelier."""
+    some = [pick for pick in arrows if pick in likely]
+    if not some:
+        others = (proposed[n].candidates[k] for n, k in likely if told[n][k] > 0)
+        taken = {i for c in others if c.kind != "bar" for i in c.pieces}
+        some = [(n, k) for n, k in arrows if taken.isdisjoint(proposed[n].candidates[k].pieces)]
+    return max(some, key=gain, default=None)
+
+
+def prefer_arrow(
+    proposed: list[Proposed], told: list[list[float]], arrows: list[Pick], first: Pick, most: float = math.inf
+) -> None:
+    """Make one arrow likelier, however its ink is read as one, and all others rarer, in place; these gain no more than
+    `most`."""
+    its = set(proposed[first[0]].candidates[first[1]].pieces)
+    for n, k in arrows:
+        if its.isdisjoint(proposed[n].candidates[k].pieces):
+            told[n][k] = min(told[n][k] - ONE_ARROW, most)
+        else:
+            told[n][k] += ONE_ARROW
 
 
 def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) -> list[float]:

@@ -10,14 +10,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Set
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.arrows import ONE_ARROW
+from sketch.arrows import likeliest_arrow, prefer_arrow
 from sketch.context import Context
 from sketch.kernel import depth
+from sketch.pieces import Page
 from sketch.proposals import HOPELESS, Proposals, Proposed, proposing
 from sketch.scan.prices import Prices
 from sketch.scan.ways import Way
@@ -26,7 +27,7 @@ from sketch.search import Packing, part
 
 __all__ = ["settle"]
 
-Points = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 ROUNDS = 6  # of choosing, each with what the readings chosen before say about those around them
 # Nats for bodies that overlap, or have an X, and for the best arrow: what is around says more for them only once they
@@ -49,16 +50,36 @@ def settle(
     width and height, in the pixels of the ways.
     """
     ways = likeliest + others + overlaps
-    first = len(likeliest) + len(others)
     proposals = Proposals(math.hypot(*canvas), _rivals([way.ink.keys() for way in ways]))
     proposals.add([way.points for way in ways])
-    page = proposals.page
-    prices = Prices(page, ways, len(likeliest), ends, pen)
-    groups: list[tuple[int, ...]] = []  # of each candidate the pieces,
-    own: list[tuple[int, ...]] = []  # the stretches of ink that no other may have,
-    candidates: list[Fitted] = []  # and, as its pieces, those that are most of its ink
+    prices = Prices(proposals.page, ways, len(likeliest), ends, pen)
+    readings = _priced(proposals, prices)
+    left = _left_over(likeliest, prices, ends)
+    ahead = _ahead(readings, len(likeliest) + len(others))
+    best = _best_together(proposals.page, readings, left, ahead)
+    return [ways[i] for k in best for i in readings.groups[k]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Readings:
+    """What the ways may be.
+
+    Attributes:
+        groups: of each reading the ways that it is of.
+        own: the stretches of ink that no other may have.
+        proposed: the readings, with the stretches that are most of their ink for pieces, and their gains.
+    """
+
+    groups: list[tuple[int, ...]]
+    own: list[tuple[int, ...]]
+    proposed: Proposed
+
+
+def _priced(proposals: Proposals, prices: Prices) -> _Readings:
+    """The readings of ways, priced by stretches of ink; of those of the same ways none that gain much less."""
+    groups, own, candidates = list[tuple[int, ...]](), list[tuple[int, ...]](), list[Fitted]()
     gains: list[float] = []
-    best_of: dict[tuple[int, ...], float] = {}  # of the same pieces: what gains much less is not it
+    best_of: dict[tuple[int, ...], float] = {}
     for c in (c for proposed in proposals.all() for c in proposed.candidates):
         taken, least = prices.of(c.pieces), best_of.get(c.pieces, HOPELESS) - HOPELESS
         if taken is not None and (gain := prices.gain(c, taken, least)) > least:
@@ -67,58 +88,85 @@ def settle(
             own.append(taken.own)
             candidates.append(replace(c, pieces=taken.main))
             gains.append(gain)
+    return _Readings(groups, own, proposing(candidates, gains))
+
+
+def _left_over(
+    likeliest: list[Way], prices: Prices, ends: dict[int, int]
+) -> list[tuple[tuple[int, ...], float]]:
+    """The stretches that may be left over together, as the ways that take all the ink are, and the nats that saves."""
     left = [
         (tuple(name for name in way.ink if name in ends), prices.together(k))
         for k, way in enumerate(likeliest)
     ]
-    left = [(ink, saved) for ink, saved in left if len(ink) > 1 and saved > 0]
-    context, proposed = Context(), proposing(candidates, gains)
-    standing = [min(group) >= first for group in groups]
+    return [(ink, saved) for ink, saved in left if len(ink) > 1 and saved > 0]
+
+
+def _ahead(readings: _Readings, first: int) -> Array:
+    """Nats that readings may gain by others, once these are chosen. first: of the ways along bodies that overlap."""
+    proposed = readings.proposed
+    overlapping = (min(group) >= first for group in readings.groups)
     ahead = np.array(
-        [AHEAD * (told_on or c) for told_on, c in zip(standing, _around_crosses(proposed), strict=True)]
+        [AHEAD * (told_on or c) for told_on, c in zip(overlapping, _around_crosses(proposed), strict=True)]
     )
-    arrows = [k for k, c in enumerate(candidates) if c.kind == "arrow"]
-    if arrows:
-        ahead[max(arrows, key=lambda k: gains[k])] = AHEAD
-    best, most = list[int](), -np.inf
-    inks, first_of = own + [ink for ink, _ in left], dict[int, list[int]]()
-    for k, ink in enumerate(inks):
-        first_of.setdefault(ink[0], []).append(k)
-    packing, leading = Packing(), list(first_of.values())
-    for start in (gains, gains + ahead) if ahead.any() else (gains,):
-        expected, chosen, told = np.array(start), list[int](), list[list[float]]()
+    if proposed.arrows:
+        ahead[max(proposed.arrows, key=proposed.gains.__getitem__)] = AHEAD
+    return ahead
+
+
+def _best_together(
+    page: Page, readings: _Readings, left: list[tuple[tuple[int, ...], float]], ahead: Array
+) -> list[int]:
+    """The readings that gain the most as they stand around one another, looked for from two beginnings: what each
+    gains by itself, and that with what others may say for it."""
+    proposed, context = readings.proposed, Context()
+    disjoint = _Disjoint(readings.own, left)
+    gains = np.array(proposed.gains)
+    best, most = list[int](), -math.inf
+    for expected in (gains, gains + ahead) if ahead.any() else (gains,):
+        chosen, told = list[int](), list[list[float]]()
         for _ in range(ROUNDS):
-            worth = [*expected.tolist(), *(saved for _, saved in left)]
-            parts = [part([inks[k] for k in some], [worth[k] for k in some]) for some in leading]
-            packed = [leading[p][k] for p, k in packing.best(parts)]
-            last, chosen = chosen, [k for k in packed if k < len(candidates)]
+            last, (chosen, saved) = chosen, disjoint.best(expected.tolist())
             if chosen == last:
                 break
-            likely = [(0, k) for k in chosen]
-            told.append(
-                _one_arrow(context.told([proposed], likely, page.size, page.drawn)[0], candidates, chosen)
-            )
-            saved = sum(worth[k] for k in packed if k >= len(candidates))
-            if (total := sum(told[-1][k] for k in chosen) + saved) > most:  # as they stand around one another
+            told.append(_told(context, page, proposed, chosen))
+            if (total := sum(told[-1][k] for k in chosen) + saved) > most:
                 best, most = chosen, total
             # of two sets each may speak for the other: what all of them say in the mean speaks for one
             expected = np.mean(told, axis=0)
-    return [ways[i] for k in best for i in groups[k]]
+    return best
 
 
-def _one_arrow(told: list[float], candidates: list[Fitted], chosen: list[int]) -> list[float]:
-    """The same gains, with the likeliest arrow likelier and the others rarer: of those chosen, or else on ink of
-    nothing that is."""
-    every = [k for k, c in enumerate(candidates) if c.kind == "arrow"]
-    taken = {name for k in chosen if candidates[k].kind != "bar" for name in candidates[k].pieces}
-    arrows = [k for k in every if k in chosen]
-    arrows = arrows or [k for k in every if taken.isdisjoint(candidates[k].pieces)]
-    if not arrows:
-        return told
-    first, out = candidates[max(arrows, key=told.__getitem__)].pieces, list(told)
-    for k in every:
-        out[k] += -ONE_ARROW if set(first).isdisjoint(candidates[k].pieces) else ONE_ARROW
-    return out
+class _Disjoint:
+    """The sets of readings of which each stretch of ink is in one at most, or left over with others."""
+
+    def __init__(self, own: list[tuple[int, ...]], left: list[tuple[tuple[int, ...], float]]) -> None:
+        """own: of each reading the stretches.  left: stretches that may be left over together, and what that saves."""
+        self._count, self._saved = len(own), [saved for _, saved in left]
+        self._inks = own + [ink for ink, _ in left]
+        first_of: dict[int, list[int]] = {}
+        for k, ink in enumerate(self._inks):
+            first_of.setdefault(ink[0], []).append(k)
+        self._leading, self._packing = list(first_of.values()), Packing()
+
+    def best(self, gains: list[float]) -> tuple[list[int], float]:
+        """The set that gains the most, given the gains of the readings; and what is saved by what it leaves over."""
+        worth = gains + self._saved
+        parts = [part([self._inks[k] for k in some], [worth[k] for k in some]) for some in self._leading]
+        packed = [self._leading[p][k] for p, k in self._packing.best(parts)]
+        saved = sum(worth[k] for k in packed if k >= self._count)
+        return [k for k in packed if k < self._count], saved
+
+
+def _told(context: Context, page: Page, proposed: Proposed, chosen: list[int]) -> list[float]:
+    """The gains of all readings as they stand around those chosen, with one arrow likelier than others."""
+    likely = [(0, k) for k in chosen]
+    told = [list(context.told([proposed], likely, page.size, page.drawn)[0])]
+    arrows = [(0, k) for k in proposed.arrows]
+    first = likeliest_arrow([proposed], told, arrows, likely, lambda pick: told[0][pick[1]])
+    if first is not None:
+        prefer_arrow([proposed], told, arrows, first)
+    return told[0]
 
 
 def _around_crosses(proposed: Proposed) -> list[bool]:
