@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import distances, thin, trace
+from sketch.scan.binding import Chains, distances, thin, trace
 from sketch.scan.broken import is_broken
 from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.crossed import crossed
@@ -155,11 +155,51 @@ def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any
 
 
 def _strokes(seen: Traced) -> list[Points]:
+    """The strokes of the ink that was seen: of all that may have been drawn, what makes the most sense together."""
+    chains = _lines(seen)
+    page, mask, distance, pen = seen.page, seen.mask, seen.distance, seen.pen
+    if chains is None or page is None or mask is None or distance is None:
+        return []
+    graph = build_graph(chains, distance, pen)
+    centre_on_ink(graph, page.darkness, pen)
+    sharpen_corners(graph, distance, pen)
+    drawn = Graph(graph.nodes, graph.radius, list(graph.edges))
+    rings = _without_rings(graph, mask, distance, pen)
+    ways = Ways(graph, pen, rings.round)
+    plain = ways.likeliest() + rings.certain + rings.doubtful
+    likeliest = [_drawn(way, seen) for way in plain]
+    if ways.is_net:
+        return _points(likeliest)
+    others = [_drawn(way, seen) for way in ways.others()]
+    others += [_drawn(way, seen) for way in _in_tangles(rings.tangles, likeliest + others, pen)]
+    sheets = [Sheet(edges, rings.round, pen) for edges in (drawn.edges, bridged(drawn, pen))]
+    stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
+    others += [_drawn(way, seen) for way in standing(sheets, stretches)]
+    others += with_tails(likeliest + others, pen * seen.scale)
+    overlaps = [_drawn(way, seen) for way in overlapping(sheets[1], rings.round, stretches)]
+    others += [_drawn(way, seen) for way in going_on(plain, distance, pen)]
+    others += [_drawn(way, seen) for way in crossed(drawn, plain, distance, pen)]
+    if not others and not overlaps:
+        return _points(likeliest)
+    height, width = mask.shape
+    ends = lines(likeliest + others + overlaps, pen * seen.scale)
+    canvas = width * seen.scale, height * seen.scale
+    chosen = settle(likeliest, others, overlaps, ends, pen * seen.scale, canvas)
+    used = frozenset(name for way in chosen for name in way.ink)
+    left = [ring for ring in rings.certain if (used & ends.keys()).isdisjoint(ring.ink)]
+    return _points(chosen + [_drawn(way, seen) for way in ways.likeliest(without=used) + left])
+
+
+def _lines(seen: Traced) -> Chains | None:
+    """The lines of the skeleton, without what was not drawn as a line: fills, shading, faint marks, specks.
+
+    What was seen is as it is without these, then. None, with the reason, where there are too many.
+    """
     import cv2
 
     page, mask, skeleton, distance, pen = seen.page, seen.mask, seen.skeleton, seen.distance, seen.pen
     if page is None or mask is None or skeleton is None or distance is None:
-        return []
+        return None
     seen.specks = drop_specks(mask, distance, pen)
     if fill_hatching(mask, pen):
         distance = distances(mask)
@@ -170,60 +210,59 @@ def _strokes(seen: Traced) -> list[Points]:
     else:
         skeleton &= mask
         size = cv2.countNonZero(skeleton)
-    seen.skeleton, seen.distance = skeleton, distance
     chains = trace(skeleton, size)
     if faint := drop_faint_marks(mask, page.darkness, chains, distance, pen):
         seen.left_out.append(f"left out {faint} marks that are far fainter than the pen's")
-        seen.distance = distance = distances(mask)
+        distance = distances(mask)
         drop_specks(mask, distance, pen)
-        seen.skeleton, size = thin(mask)
-        chains = trace(seen.skeleton, size)
+        skeleton, size = thin(mask)
+        chains = trace(skeleton, size)
+    seen.skeleton, seen.distance = skeleton, distance
     if len(chains.chains) > MOST_LINES:
         seen.problem = f"nothing was read: {len(chains.chains)} lines are too many for a drawing"
-        return []
-    graph = build_graph(chains, distance, pen)
-    centre_on_ink(graph, page.darkness, pen)
-    sharpen_corners(graph, distance, pen)
-    drawn = Graph(graph.nodes, graph.radius, list(graph.edges))
+        return None
+    return chains
+
+
+class _Rings(NamedTuple):
+    """The small rings of a drawing.
+
+    Attributes:
+        round: the ways around all that are round, each shape (n, 2) [pixels], best first.
+        certain: those of them that are nothing else, with their ink.  doubtful: likewise, the others.
+        tangles: graphs of what may be drawn otherwise than with a ring, as they were with it.
+    """
+
+    round: list[Points]
+    certain: list[Way]
+    doubtful: list[Way]
+    tangles: list[Graph]
+
+
+def _without_rings(graph: Graph, mask: NDArray[Any], distance: NDArray[Any], pen: float) -> _Rings:
+    """Take the small rings out of the graph, in place: the certain ones first."""
     found, names = find_rings(mask, distance, pen), count()
     plain, certain = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
     whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen, names)
-    rings = certain + doubtful
-    round_ways = [ring.points for ring in found]
-    ways = Ways(graph, pen, round_ways)
-    first = ways.likeliest() + rings
-    likeliest = [_drawn(way, seen) for way in first]
-    if ways.is_net:
-        return [way.points for way in likeliest if len(way.points) > 1]
-    others = [_drawn(way, seen) for way in ways.others()]
-    for tangle in (small_pieces(plain), whole):
-        if tangle is not None:
-            tangled = Ways(tangle, pen)
-            known = {frozenset(way.ink) for way in likeliest + others}
-            more = [way for way in tangled.likeliest() + tangled.others() if frozenset(way.ink) not in known]
-            others += [_drawn(way, seen) for way in more]
-    sheets = [Sheet(edges, round_ways, pen) for edges in (drawn.edges, bridged(drawn, pen))]
-    stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
-    others += [_drawn(way, seen) for way in standing(sheets, stretches)]
-    others += with_tails(likeliest + others, pen * seen.scale)
-    overlaps = [_drawn(way, seen) for way in overlapping(sheets[1], round_ways, stretches)]
-    others += [_drawn(way, seen) for way in going_on(first, distance, pen)]
-    others += [_drawn(way, seen) for way in crossed(drawn, first, distance, pen)]
-    if others or overlaps:
-        height, width = mask.shape
-        ends = lines(likeliest + others + overlaps, pen * seen.scale)
-        canvas = width * seen.scale, height * seen.scale
-        chosen = settle(likeliest, others, overlaps, ends, pen * seen.scale, canvas)
-        used = frozenset(name for way in chosen for name in way.ink)
-        left = [ring for ring in certain if (used & ends.keys()).isdisjoint(ring.ink)]
-        likeliest = chosen + [_drawn(way, seen) for way in ways.likeliest(without=used) + left]
-    return [way.points for way in likeliest if len(way.points) > 1]
+    tangles = [tangle for tangle in (_small_pieces(plain), whole) if tangle is not None]
+    return _Rings([ring.points for ring in found], certain, doubtful, tangles)
 
 
-def small_pieces(graph: Graph | None) -> Graph | None:
+def _small_pieces(graph: Graph | None) -> Graph | None:
     """Those pieces of a tangle that may be one stroke by themselves; None without any."""
     few = [] if graph is None else [e for piece in graph.pieces() if len(piece) <= FEW for e in piece]
     return Graph(graph.nodes, graph.radius, [graph.edges[e] for e in few]) if graph and few else None
+
+
+def _in_tangles(tangles: list[Graph], known: list[Way], pen: float) -> list[Way]:
+    """The ways through tangles that are not of the same ink as one that is known."""
+    inks, found = {frozenset(way.ink) for way in known}, list[Way]()
+    for tangle in tangles:
+        ways = Ways(tangle, pen)
+        new = [way for way in ways.likeliest() + ways.others() if frozenset(way.ink) not in inks]
+        inks |= {frozenset(way.ink) for way in new}
+        found += new
+    return found
 
 
 def _drawn(way: Way, seen: Traced) -> Way:
@@ -233,6 +272,11 @@ def _drawn(way: Way, seen: Traced) -> Way:
     if seen.scale != 1:
         ink = {name: (stretch + 0.5) * seen.scale - 0.5 for name, stretch in ink.items()}
     return Way((points + 0.5) * seen.scale - 0.5, ink, way.strain)
+
+
+def _points(ways: list[Way]) -> list[Points]:
+    """The ways as strokes; a single point is none."""
+    return [way.points for way in ways if len(way.points) > 1]
 
 
 def smooth(points: Points, sigma: float) -> Points:
