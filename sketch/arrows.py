@@ -7,17 +7,14 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.kernel import depth
 from sketch.pieces import Page, Piece
-from sketch.proposals import Proposed, Row
+from sketch.proposals import Pick, Proposed, Row
 from sketch.scoring import Fitted
+from sketch.typing import Array
 
-__all__ = ["Pick", "likeliest_arrow", "pointing", "prefer_arrow"]
-
-Array = NDArray[np.float64]
-Pick = tuple[int, int]  # what was proposed by which piece, and which of it
+__all__ = ["likeliest_arrow", "pointing", "prefer_arrow"]
 
 # nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two
 ONE_ARROW = 15.0

@@ -8,16 +8,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.scene import Body, Circle, Polygon, Rectangle
 from sketch import kernel
 from sketch.kernel import depth, is_simple
 from sketch.reading import Reading
+from sketch.typing import Array
 
 __all__ = ["Bodies", "Drawn", "draw_body", "thick", "touch"]
-
-Array = NDArray[np.float64]
 
 # After Okabe and Ito, and Tol: told apart by colour-blind readers, and by their lightness in print.
 PALETTE = [

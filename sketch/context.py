@@ -6,18 +6,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.kernel import beside, depth
 from sketch.pins import PINNED, is_pinned
-from sketch.proposals import Proposed, Row
+from sketch.proposals import Pick, Proposed, Row
 from sketch.scoring import Fitted
+from sketch.typing import Array
 from sketch.writing import LARGEST, WITHIN, WRITTEN
 
-__all__ = ["Context", "Pick"]
+__all__ = ["Context"]
 
-Array = NDArray[np.float64]
-Pick = tuple[int, int]  # what was proposed by which piece, and which of it
 Around = dict[Fitted, Row]  # bodies and marks, each with where it is
 Gaps = dict[tuple[Fitted, Fitted], tuple[float, Array]]  # of open lines: how wide [pixels], and where
 

@@ -7,17 +7,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.grouping import shafts
 from sketch.kernel import cuts
 from sketch.marks import read_arrows, read_bar, read_cross
 from sketch.outlines import read_outline
 from sketch.pieces import Page, Piece
+from sketch.typing import Array
 
 __all__ = ["things_in"]
-
-Array = NDArray[np.float64]
 
 WAY = 2  # the kind of part, as ink_cut numbers them, that leads from one thing to the next
 CUT = 10.0  # nats that going on to another thing, or on the way to it, is rarer than lifting the pen

@@ -10,9 +10,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sketch.kernel import Point, Shaft, lent
+from sketch.kernel import Shaft, lent
 from sketch.loose import Chain
-from sketch.pieces import Array, Page, Piece
+from sketch.pieces import Page, Piece
+from sketch.typing import Array, Point
 
 __all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "in_line", "shafts"]
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.scene import InputError
+from sketch.typing import Array
 
 __all__ = ["Sketch", "Stroke"]
 
@@ -25,8 +26,8 @@ class Stroke:
     Raises InputError for points that are not so.
     """
 
-    points: NDArray[np.float64]
-    times: NDArray[np.float64] | None = None
+    points: Array
+    times: Array | None = None
 
     def __post_init__(self) -> None:
         try:

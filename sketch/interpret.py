@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.scene import Joint, Scene, View
 from sketch.bodies import Bodies, Drawn, draw_body, touch
@@ -15,10 +14,9 @@ from sketch.ink import Sketch
 from sketch.kernel import depth
 from sketch.reading import Reading
 from sketch.tidy import close_gaps, straighten
+from sketch.typing import Array
 
 __all__ = ["interpret"]
-
-Array = NDArray[np.float64]
 
 GRAVITY = 9.81
 PAGE = 10.0  # metres: the longer side of a page without a scale

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.library import address, library
+from sketch.typing import Array, Box, Point
 
 __all__ = [
     "SIDES",
@@ -37,10 +38,6 @@ __all__ = [
     "touch",
     "words",
 ]
-
-Array = NDArray[np.float64]
-Point = tuple[float, float]
-Box = tuple[float, float, float, float]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
 COURSE, HEADS = 32, 4  # as in core/course.c and core/heads.c

@@ -7,13 +7,12 @@ from collections.abc import Sequence, Set
 from itertools import accumulate
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.library import address, library
+from sketch.typing import Array
 
 __all__ = ["Chain", "End", "LooseEnds"]
 
-Array = NDArray[np.float64]
 Chain = list[tuple[int, bool]]  # pieces that go once around, each with whether it was drawn the other way
 End = int  # 2 * piece for where a piece begins, one more for where it ends
 

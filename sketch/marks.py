@@ -10,8 +10,9 @@ import numpy as np
 
 from sketch.kernel import ArrowFit, Shaft, course, fit_arrows, off_outline
 from sketch.outlines import GAP, RETRACE
-from sketch.pieces import Array, Page, Piece
+from sketch.pieces import Page, Piece
 from sketch.scoring import FREE, PARAMETER, Fitted, meaningless, misfit, misfit_of
+from sketch.typing import Array
 
 __all__ = [
     "ASIDE",

@@ -11,15 +11,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.kernel import depth
 from sketch.marks import ASIDE, LIFT
 from sketch.scoring import Fitted
+from sketch.typing import Array
 
 __all__ = ["Chosen", "merged"]
-
-Array = NDArray[np.float64]
 
 SAME_PLACE = (
     0.2  # of a body's size: outlines nowhere further apart are one body, gone over; of an arrow's, its ends

@@ -9,17 +9,15 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline, ring
 from sketch.loose import Chain
 from sketch.pieces import Page, Piece
 from sketch.sampling import unevenness
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit
+from sketch.typing import Array
 
 __all__ = ["LEAST_AXIS", "gone_over", "read_borrowing", "read_outline"]
-
-Array = NDArray[np.float64]
 
 MOST_SIDES = 12
 FEWEST, MOST = 5, 7  # sides of polygons that are nearly round, as in core/outline.c

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.ink import Sketch
-from sketch.kernel import Point, along, heads, joined, measure
+from sketch.kernel import along, heads, joined, measure
 from sketch.loose import Chain, End, LooseEnds
 from sketch.scoring import unread
+from sketch.typing import Array, Point
 
 __all__ = ["Looked", "Page", "Piece", "page_of"]
 
@@ -21,7 +21,6 @@ SPECK = 1 / 8  # of the canvas: what is drawn on less of it is small, not a page
 DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
-Array = NDArray[np.float64]
 
 NOTHING = measure([])
 

@@ -6,15 +6,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.kernel import SIDES, off_outline, place
 from sketch.pieces import Page
 from sketch.scoring import Fitted
+from sketch.typing import Array
 
 __all__ = ["Placed", "placed"]
-
-Array = NDArray[np.float64]
 
 
 class Placed(NamedTuple):

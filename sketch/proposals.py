@@ -17,7 +17,6 @@ from functools import cached_property, partial
 from itertools import accumulate
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, in_line, shafts
 from sketch.kernel import off_outline
@@ -27,8 +26,9 @@ from sketch.outlines import LEAST_AXIS, gone_over, read_borrowing, read_outline
 from sketch.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted, misfit_of
 from sketch.search import Part, part
+from sketch.typing import Array, Box
 
-__all__ = ["HOPELESS", "Box", "Proposals", "Proposed", "Row", "proposing"]
+__all__ = ["HOPELESS", "Pick", "Proposals", "Proposed", "Row", "proposing"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
 CLOSED = 0.04  # of its ink, what is missing at most of an outline that needs no other ink
@@ -39,8 +39,8 @@ HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less
 
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
 Fits = dict[Key, list[Fitted]]
-Box = tuple[float, float, float, float]
-Row = list[float]
+Row = list[float]  # where a reading lies: least x and y, greatest x and y, extent [pixels]
+Pick = tuple[int, int]  # what was proposed by which piece, and which of it
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -132,9 +132,7 @@ class Proposals:
         self._alone: dict[int, Alone] = {}
         self._stale: set[int] = set()
 
-    def add(
-        self, strokes: list[NDArray[np.float64]], given: Sequence[NDArray[np.float64] | None] = ()
-    ) -> range:
+    def add(self, strokes: list[Array], given: Sequence[Array | None] = ()) -> range:
         """Add strokes, (n, 2) [pixels]; returns their indices.  given: as of `Page.add`."""
         new = self.page.add(strokes, given)
         self._settle([i for i in new if i in self.page.pieces])

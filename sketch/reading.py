@@ -7,8 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
+from sketch.typing import Array
 
 __all__ = ["Reading", "Rival", "scored"]
 
@@ -44,7 +43,7 @@ class Reading:
     kind: str
     strokes: tuple[int, ...]
     score: float
-    outline: NDArray[np.float64]
+    outline: Array
     alternatives: list[tuple[str, float]] = field(default_factory=list)
     gain: float = 0.0
     margin: float = 0.0

@@ -30,7 +30,7 @@ from sketch.merging import Chosen, merged
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page
 from sketch.placing import Placed, placed
-from sketch.proposals import Proposals, Proposed, proposing
+from sketch.proposals import Pick, Proposals, Proposed, proposing
 from sketch.reading import Reading, Rival, scored
 from sketch.sampling import sampled
 from sketch.scoring import Fitted
@@ -249,7 +249,7 @@ class Recognizer:
             )
         return readings
 
-    def _packed(self, proposed: list[Proposed], told: list[list[float]]) -> list[tuple[int, int]]:
+    def _packed(self, proposed: list[Proposed], told: list[list[float]]) -> list[Pick]:
         """The best set of readings, each ink in one, given what all of them gain."""
         known, self._parts = self._parts, {}
         for p, gains in zip(proposed, told, strict=True):

@@ -9,11 +9,10 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from sketch.typing import Array
 
 __all__ = ["Sampled", "sampled", "unevenness"]
-
-Array = NDArray[np.float64]
 
 ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 FEW = 24  # points of a stroke: in more a corner that lies between two of them is hardly cut

@@ -16,14 +16,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from sketch.typing import Array
 
 if TYPE_CHECKING:
     from sketch.pieces import Piece
 
 __all__ = ["Fitted", "meaningless", "misfit", "misfit_of", "unread"]
-
-Array = NDArray[np.float64]
 
 TREMOR = 0.05  # spread of ink about what was meant, as a share of its size; of outlines it is less, see core/outline.c
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius; as in core/outline.h

@@ -18,12 +18,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from sketch.typing import Array, Point
 
 __all__ = ["HANDS", "Hand", "arrow", "circle", "cross", "curve", "ellipse", "line", "outline", "scribble"]
-
-Array = NDArray[np.float64]
-Point = tuple[float, float]
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,14 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.scene import Joint
 from sketch.bodies import Drawn
 from sketch.kernel import is_simple
 from sketch.reading import Reading
+from sketch.typing import Array
 
 __all__ = ["close_gaps", "straighten"]
-
-Array = NDArray[np.float64]
 
 # By judgement; what they change is a note each, and happens only where it was asked for.
 LEVEL = math.radians(4)  # nobody draws a line more level than this by hand, and nobody means a ramp by less

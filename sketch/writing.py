@@ -8,19 +8,16 @@ from bisect import bisect_right
 from collections.abc import Collection, Mapping, Sequence, Set
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.hatching import hatching
-from sketch.kernel import Point, depth, words
+from sketch.kernel import depth, words
 from sketch.pieces import Page, Piece
 from sketch.pins import is_pinned
-from sketch.proposals import Proposed, Row
+from sketch.proposals import Pick, Proposed, Row
 from sketch.scoring import Fitted
+from sketch.typing import Point
 
 __all__ = ["LARGEST", "WITHIN", "WRITTEN", "written"]
-
-Array = NDArray[np.float64]
-Pick = tuple[int, int]  # what was proposed by which piece, and which of it
 
 # nats that another thing in a row is likelier a letter, for each stroke there that means nothing
 WRITTEN = 60.0

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["head"]
+from sketch.typing import Point
 
-Point = tuple[float, float]
+__all__ = ["head"]
 
 LENGTH = 30.0  # of a barb [pixels]
 SPREAD = math.radians(25)  # between shaft and barb

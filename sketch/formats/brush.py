@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from sketch.typing import Array
 
 __all__ = ["centre_line"]
-
-Array = NDArray[np.float64]
 
 # By judgement, on outlines made of known strokes (tests/sketch/test_brush.py).
 FEWEST = 16  # corners of such an outline: ready shapes have fewer

@@ -13,10 +13,9 @@ import msgspec
 from sim.scene import InputError, parse_json
 from sketch.formats import arrowheads, strokes
 from sketch.ink import Sketch
+from sketch.typing import Point
 
 __all__ = ["read"]
-
-Point = tuple[float, float]
 
 PIECES = 12  # straight pieces of a curve between two of its points
 

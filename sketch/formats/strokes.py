@@ -12,10 +12,10 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.scene import InputError, check_format, parse_json
 from sketch.ink import Sketch, Stroke
+from sketch.typing import Array
 
 __all__ = ["from_objects", "read"]
 
@@ -25,8 +25,6 @@ MAX_STROKES = 5_000  # in a machine there are some hundred; as many lines as thi
 MAX_COORDINATE = 1e7  # pixels: squares and fourth powers of it stay exact enough
 
 _LAYOUT = 'a stroke is {"points": [[x, y], ...]}, a list of points, or {"x": [...], "y": [...]}'
-
-Array = NDArray[np.float64]
 
 
 def read(data: bytes) -> Sketch:

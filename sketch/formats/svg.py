@@ -13,19 +13,17 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.scene import InputError
 from sketch.formats import arrowheads, brush, strokes
 from sketch.formats.markup import Element, parse_xml
 from sketch.ink import Sketch
+from sketch.typing import Array
 
 if TYPE_CHECKING:
     from xml.etree import ElementTree as ET
 
 __all__ = ["read"]
-
-Array = NDArray[np.float64]
 
 NO_INK = ("text", "image", "foreignObject")  # seen, but no lines
 UNSEEN = ("clipPath", "mask", "marker", "pattern", "title", "desc", "metadata")

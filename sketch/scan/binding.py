@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.library import address, library
+from sketch.typing import Points
 
 __all__ = [
     "Chains",
@@ -31,8 +32,6 @@ __all__ = [
     "thin",
     "trace",
 ]
-
-Points = NDArray[np.float64]
 
 _MASK = np.ctypeslib.ndpointer(np.uint8, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
 _PICTURE = np.ctypeslib.ndpointer(np.uint8, ndim=3, flags="C_CONTIGUOUS")

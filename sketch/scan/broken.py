@@ -7,16 +7,12 @@ none of this, and loses a little of its corners by it.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.scan.binding import along_lines
+from sketch.typing import Image
 
 __all__ = ["is_broken", "smooth_lines"]
-
-Image = NDArray[Any]  # uint8
 
 WHOLE = 14.0  # pen widths of line to an end: a drawing has more
 STROKE = 1.5  # [pixels]: standard deviation of the smoothing before directions are looked at

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from sketch.scan.graph import RING, Graph
 from sketch.scan.quantiles import median
+from sketch.typing import Points
 
 __all__ = ["begin_at_corner", "sharpen_corners"]
-
-Points = NDArray[np.float64]
 
 CUT = 1.0  # pen widths to either side of a corner that thinning bends
 SIDE = 2.0  # pen widths of each side, beyond, that show where it leads

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from sketch.scan.graph import RING, End, Graph
+from sketch.typing import Points
 
 __all__ = ["Course", "Links", "follow", "length", "through"]
 
-Points = NDArray[np.float64]
 Links = dict[End, tuple[End, Points]]  # where a course goes on from an end, and the ink in between
 
 

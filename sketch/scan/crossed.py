@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from sketch.scan.graph import Graph, Ink
 from sketch.scan.ways import Way
+from sketch.typing import Points
 
 __all__ = ["crossed"]
-
-Points = NDArray[np.float64]
 
 # Pen widths between the tips of the longer bar: the skeleton of larger marks is plain.
 SMALLEST, LARGEST = 2.5, 12.0

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import Chains
 from sketch.scan.quantiles import median
+from sketch.typing import Image
 
 __all__ = ["drop_faint_marks"]
-
-Image = NDArray[Any]  # uint8
 
 LONG = 2.0  # pen widths: shorter chains do not say how dark their line is
 APART = 1.3  # times as dark is what was drawn than the darkest of what was not,

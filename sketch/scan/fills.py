@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import distances
+from sketch.typing import Image
 
 __all__ = ["FILL", "fill_grain", "fill_hatching", "holes", "hollow_fills"]
-
-Image = NDArray[Any]  # uint8
 
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
 GRAIN = 1.0  # squares of the pen width: larger holes are no grain

@@ -5,14 +5,11 @@ It is straight as no hand draws it, and neither it nor what is beyond it - the w
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
+
+from sketch.typing import Image
 
 __all__ = ["within_frame"]
-
-Image = NDArray[Any]  # uint8
 
 STRAIGHT = 0.003  # of the frame's size: how far its sides are off straight lines
 MOSTLY = 0.9  # of the sides' length is as straight as that: on the rest hangs what is no part of the frame

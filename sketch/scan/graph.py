@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import Chains, course_length, heading
 from sketch.scan.quantiles import median
+from sketch.typing import Points
 
 __all__ = ["RING", "SIGHT", "Edge", "End", "Graph", "Ink", "build_graph"]
 
-Points = NDArray[np.float64]
 RING = (-2, -2)  # the ends of an edge that closes on itself
 SIGHT = 4.0  # pen widths along a branch that show where it is going
 OVERSHOOT = 2.5  # pen widths that a line may go on past its corner

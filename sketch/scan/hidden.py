@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 from sketch.scan.binding import heading
 from sketch.scan.graph import SIGHT
 from sketch.scan.ways import Way
+from sketch.typing import Points
 
 __all__ = ["going_on"]
-
-Points = NDArray[np.float64]
 
 ROUND = 0.5  # pen widths: an end of a line is as far from the edge of its ink; less than as much further is nothing
 

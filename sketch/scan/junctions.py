@@ -14,14 +14,13 @@ from functools import cached_property
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.scan.binding import bend, heading
 from sketch.scan.graph import SIGHT, End, Graph
+from sketch.typing import Points
 
 __all__ = ["LONELY", "Branch", "Junction", "Pairs", "find_junctions", "turn_cost"]
 
-Points = NDArray[np.float64]
 Pairs = list[tuple[int, int]]  # indices of a junction's branches
 
 CROSSING = 1.6  # pen widths: nodes nearer than this are one crossing, which thinning pulled apart

@@ -19,10 +19,9 @@ from numpy.typing import NDArray
 from sketch.scan.sheet import Outline, Sheet
 from sketch.scan.stretches import Stretches
 from sketch.scan.ways import Way
+from sketch.typing import Points
 
 __all__ = ["overlapping"]
-
-Points = NDArray[np.float64]
 
 SOLID = 0.9  # of its hull's area: what a convex outline drawn by hand has at least
 MOST_FACES = 24  # that hang together: more are a grid, or shading

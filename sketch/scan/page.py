@@ -15,6 +15,7 @@ from sketch.scan.punched import punched
 from sketch.scan.quantiles import median, percentile
 from sketch.scan.ruling import FEWEST, drop_ruling
 from sketch.scan.table import TABLE, closed, darkest_channel, find_sheet
+from sketch.typing import Image
 
 __all__ = [
     "Page",
@@ -22,8 +23,6 @@ __all__ = [
     "ink_mask",
     "read_page",
 ]
-
-Image = NDArray[Any]  # uint8
 
 LIGHT_PIXELS = 120_000  # light is looked at on a picture reduced to this many
 WIDEST_LINE = 0.035  # of the picture's size, to either side: what is dark and wider is no pen line

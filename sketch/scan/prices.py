@@ -18,10 +18,9 @@ from sketch.scan.graph import Ink
 from sketch.scan.strokes import CRUMB
 from sketch.scan.ways import SIDE, Way
 from sketch.scoring import STRANGE, Fitted
+from sketch.typing import Points
 
 __all__ = ["Prices", "Taken", "lines"]
-
-Points = NDArray[np.float64]
 
 # pen widths that ink may be off what was fitted to it, for all that tracing leaves of it in a tangle
 OFF = 0.5

@@ -5,14 +5,12 @@ One that the picture's edge cuts need be neither round nor one of two: nobody fi
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["punched"]
+from sketch.typing import Image
 
-Image = NDArray[Any]  # uint8
+__all__ = ["punched"]
 
 ROUND = 0.12  # of its width: what a hole's height may differ, and of a disc's area, its own
 ALIKE = 0.15  # of its width: what that of another may differ,

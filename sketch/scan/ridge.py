@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.graph import RING, Graph
+from sketch.typing import Points
 
 __all__ = ["centre_on_ink"]
-
-Points = NDArray[np.float64]
 
 FARTHEST = 1.0  # [pixels] that a point is moved: thinning is off by no more along a clean line
 STEP = 0.5  # [pixels] between the samples across a line

@@ -18,12 +18,11 @@ from sketch.scan.binding import belt, distances
 from sketch.scan.fills import holes
 from sketch.scan.graph import Edge, Graph, Ink
 from sketch.scan.ways import Way
+from sketch.typing import Box, Points
 
 __all__ = ["find_rings", "take_rings"]
 
-Points = NDArray[np.float64]
 Belt = tuple[float, Points, float, Points]  # as of `belt`
-Box = tuple[float, float, float, float]  # left, top, right, bottom [pixels]
 
 SMALLEST, LARGEST = 0.9, 4.5  # pen widths: the radius that the pen's middle went along, as in core/belt.c
 CHINK = 1.0  # squares of the pen width: a smaller hole is one between lines that cross, for all one can tell

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import pieces
 from sketch.scan.quantiles import median
+from sketch.typing import Image
 
 __all__ = ["drop_ruling"]
 
-Image = NDArray[Any]  # uint8
 Line = NDArray[np.float64]  # y = a x² + b x + c, as polyfit gives it
 
 LONG = 0.3  # of the picture's width: what a stretch of a printed line has at least

@@ -13,7 +13,6 @@ from collections.abc import Set
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.arrows import likeliest_arrow, prefer_arrow
 from sketch.context import Context
@@ -24,10 +23,9 @@ from sketch.scan.prices import Prices
 from sketch.scan.ways import Way
 from sketch.scoring import Fitted
 from sketch.search import Packing, part
+from sketch.typing import Array
 
 __all__ = ["settle"]
-
-Array = NDArray[np.float64]
 
 ROUNDS = 6  # of choosing, each with what the readings chosen before say about those around them
 # Nats for bodies that overlap, or have an X, and for the best arrow: what is around says more for them only once they

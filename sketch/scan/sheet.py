@@ -15,14 +15,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.scan.graph import RING, SIGHT, Edge, Graph
 from sketch.scan.outlines import SMOOTH, ends_cost
+from sketch.typing import Points
 
 __all__ = ["GAP", "Face", "Outline", "Sheet", "bridged"]
-
-Points = NDArray[np.float64]
 
 SLIVER = 1.2  # pen widths: the mean width of a face between two lines that are drawn along each other
 GAP = 3.0  # pen widths: of an outline's gap that is closed

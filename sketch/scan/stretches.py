@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.scan.graph import Ink
+from sketch.typing import Points
 
 __all__ = ["Stretches"]
-
-Points = NDArray[np.float64]
 
 BESIDE = 0.9  # pen widths: ink as near to an outline is its ink
 MOSTLY = 0.8  # of a stretch of ink must be

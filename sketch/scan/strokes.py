@@ -8,16 +8,14 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.scan.courses import Course, Links
 from sketch.scan.graph import RING, End, Graph
 from sketch.scan.junctions import LONELY, Branch, Junction, Pairs, turn_cost
 from sketch.scan.sheet import GAP
+from sketch.typing import Points
 
 __all__ = ["CRUMB", "Layout"]
-
-Points = NDArray[np.float64]
 
 SHARED_SIDE = 0.45  # an outline may borrow this share of its length from ink that it rests on
 CRUMB = 2.0  # pen widths: a piece shorter than this that starts at other ink is part of that

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.quantiles import median, percentile
+from sketch.typing import Image
 
 __all__ = ["TABLE", "closed", "darkest_channel", "find_sheet"]
-
-Image = NDArray[Any]  # uint8
 
 TABLE = 0.5  # what is not as bright as this share of the paper is not paper
 FEWER = 3  # of these a side one is enough for a mean or a median

@@ -8,14 +8,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.scan.binding import course_length
 from sketch.scan.ways import Way
+from sketch.typing import Points
 
 __all__ = ["with_tails"]
-
-Points = NDArray[np.float64]
 
 TAIL = 0.25  # of an outline's length: a longer line is none's tail
 OPEN = 0.6  # of its own length: nearer ends are a loop's

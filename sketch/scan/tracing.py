@@ -30,10 +30,9 @@ from sketch.scan.sheet import Sheet, bridged
 from sketch.scan.stretches import Stretches
 from sketch.scan.tails import with_tails
 from sketch.scan.ways import Way, Ways
+from sketch.typing import Points
 
 __all__ = ["Traced", "trace_picture"]
-
-Points = NDArray[np.float64]
 
 WORK_PIXELS = 2_500_000  # more than this are not looked at before the pen's width is known
 MOST_PIXELS = 16_000_000  # that are ever looked at: no pen is as thin as a pixel of these

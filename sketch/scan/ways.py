@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from itertools import combinations, islice
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sketch.scan.courses import Course, Links, follow, through
 from sketch.scan.graph import Graph, Ink
@@ -20,10 +19,9 @@ from sketch.scan.junctions import find_junctions
 from sketch.scan.outlines import Choice, close_outlines
 from sketch.scan.strokes import Layout
 from sketch.scan.unlifted import unlifted
+from sketch.typing import Points
 
 __all__ = ["SIDE", "Way", "Ways", "trace_strokes"]
-
-Points = NDArray[np.float64]
 
 DOUBT = 3.0  # [rad²] that pairings may be worse in all than the best ones, and still be looked at
 SIDE = 3.0  # pen widths: the shortest side that is borrowed from other ink
