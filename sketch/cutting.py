@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from sketch.bars import read_bar
 from sketch.grouping import shafts
 from sketch.kernel import cuts
-from sketch.marks import read_arrows, read_bar, read_cross
+from sketch.marks import read_arrows, read_cross
 from sketch.outlines import read_outline
 from sketch.pieces import Page, Piece
 from sketch.typing import Array

@@ -12,16 +12,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sketch.bars import ASIDE, LIFT
 from sketch.kernel import depth
-from sketch.marks import ASIDE, LIFT
 from sketch.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["Chosen", "merged"]
 
-SAME_PLACE = (
-    0.2  # of a body's size: outlines nowhere further apart are one body, gone over; of an arrow's, its ends
-)
+# of a body's size, or of an arrow's length: two nowhere further apart are one, gone over
+SAME_PLACE = 0.2
 
 
 class Chosen(NamedTuple):

@@ -9,9 +9,10 @@ from operator import index
 import numpy as np
 
 from sim.scene import InputError
+from sketch.bars import line_of_any_course, read_bar
 from sketch.grouping import closing_chains, shafts
 from sketch.loose import Chain
-from sketch.marks import line_of_any_course, read_arrows, read_bar, read_cross
+from sketch.marks import read_arrows, read_cross
 from sketch.outlines import read_outline
 from sketch.pieces import Page, Piece
 from sketch.scoring import Fitted

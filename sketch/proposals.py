@@ -18,10 +18,11 @@ from itertools import accumulate
 
 import numpy as np
 
+from sketch.bars import read_bar, read_bar_of_two, read_line
 from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, in_line, shafts
 from sketch.kernel import off_outline
 from sketch.loose import Chain, End
-from sketch.marks import read_arrows, read_bar, read_bar_of_two, read_cross, read_line, with_strays
+from sketch.marks import read_arrows, read_cross, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_borrowing, read_outline
 from sketch.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted, misfit_of

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from sketch.bars import STRAIGHT, read_bar_of_two
 from sketch.ink import Sketch, Stroke
-from sketch.marks import STRAIGHT, read_bar_of_two, read_cross
+from sketch.marks import read_cross
 from sketch.pieces import Page, page_of
 from sketch.scoring import meaningless, misfit
 

@@ -1,0 +1,116 @@
+"""Readings of open lines: thin bars, straight or bent, in one stroke or in two."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from sketch.kernel import course, off_outline
+from sketch.outlines import GAP, RETRACE
+from sketch.pieces import Page, Piece
+from sketch.scoring import PARAMETER, Fitted, misfit_of
+from sketch.typing import Array
+
+__all__ = ["ASIDE", "LIFT", "line_of_any_course", "read_bar", "read_bar_of_two", "read_line"]
+
+OPEN = 0.3  # of its length: how far apart the ends of an open line are at least
+MOST_BENDS = 5  # sides of a bar, at most
+# of its half extent: usual spread of a rod's ink; what is off by much more is bent on purpose
+STRAIGHT = 0.02
+LIFT = 0.1  # of a bar's length: what lacks at most where the pen was lifted within it
+ASIDE = 0.06  # of a bar's length: how far aside the pen went on, at most, after it was lifted
+AGAIN = 0.5  # of the shorter of two strokes: where so much of it lies along the other, one was gone over
+RING = 0.2  # of its length: how far apart the ends of a small ring are at most
+BEND = 3.0  # nats for each corner of a bar
+SHARP = 12.0  # nats that a right angle is rarer in a bar, one that folds it back twice that
+RARE = 25.0  # nats that an open line is rarer than an outline
+ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning
+THIN = 0.004  # of its length: what a line of any course is as thick as, at least
+
+
+def read_bar(piece: Piece) -> Fitted | None:
+    """An open line or polyline: a thin bar. None for a stroke whose ends meet."""
+    if piece.gap < OPEN * piece.length:
+        return None
+    best, segments = math.inf, 1
+    for k in range(1, MOST_BENDS + 1):
+        said = 2 * (k + 1) * PARAMETER
+        if said + BEND * (k - 1) > best:
+            break
+        bowed = 0.5 * piece.residual[k] / (STRAIGHT * max(piece.scale, 1e-9)) ** 2
+        cost = misfit_of(piece, piece.residual[k]) + bowed + said + BEND * (k - 1)
+        if cost > best:
+            continue
+        cost += SHARP * _turning(piece.corners(k))
+        if cost < best:
+            best, segments = cost, k
+    return _bar((piece.index,), best + RARE, piece.line(segments))
+
+
+def read_line(piece: Piece) -> Fitted | None:
+    """An open line of any course: ground, where an X stands on it; by itself free ink is likelier.
+
+    None for one that crosses itself, or whose ends meet.
+    """
+    if piece.gap < OPEN * piece.length:
+        return None
+    line = line_of_any_course(piece)
+    return None if line is None else _bar((piece.index,), piece.unread + ANY_COURSE, line)
+
+
+def line_of_any_course(piece: Piece) -> Array | None:
+    """A piece's ink as a few sides in equal steps [pixels]; None where it crosses itself."""
+    return course(piece.points, THIN * piece.length)
+
+
+def read_bar_of_two(page: Page, first: Piece, second: Piece) -> Fitted | None:
+    """A straight bar in two strokes: one goes on where the other ends, or over it once more.
+
+    None where they are not in line, or far apart; and where a small ring joins them: these are two rods.
+    """
+    (ax, ay), (bx, by) = first.ends
+    chord = math.hypot(bx - ax, by - ay)
+    ux, uy = (bx - ax) / chord, (by - ay) / chord
+    at = [((x - ax) * ux + (y - ay) * uy, (y - ay) * ux - (x - ax) * uy) for x, y in second.ends]
+    (low, off), (high, away) = sorted(at)
+    long = max(chord, high) - min(0.0, low)
+    lift = max(low - chord, -high, 0.0)  # what lacks between them
+    if lift > LIFT * long or max(abs(off), abs(away)) > ASIDE * long:
+        return None
+    again = min(chord, high) - max(0.0, low)
+    if again < AGAIN * min(chord, high - low):
+        x, y = (bx, by) if low > 0.5 * chord else (ax, ay)
+        reach = LIFT * long
+        if any(r.gap < RING * r.length for r in page.touching(x - reach, y - reach, x + reach, y + reach)):
+            return None
+    ink = page.strokes.samples[[first.stroke, second.stroke]]
+    weights = np.array([first.length, second.length]) / (len(ink[0]) * (first.length + second.length))
+    middle = (weights[:, None, None] * ink).sum(axis=(0, 1))
+    from_middle = ink - middle
+    spread = np.einsum("s,sni,snj->ij", weights, from_middle, from_middle)
+    squares, axes = np.linalg.eigh(spread)
+    along = axes[:, 1]
+    reaches = np.sort((np.array([*first.ends, *second.ends]) - middle) @ along)[[0, -1]]
+    line = middle + reaches[:, None] * along
+    square, count = float(squares[0]), first.observations + second.observations
+    lacking = GAP * count * lift / long + RETRACE * count * max(again, 0.0) / long
+    scale = math.sqrt(3) / 4 * long  # half of the extent of a straight line so long
+    bowed = 0.5 * square / (STRAIGHT * scale) ** 2
+    # each stroke is off it by its own writer's precision: a letter's bar is no part of a floor's side
+    far = off_outline(page.strokes, [first.stroke, second.stroke], line)
+    said = sum(misfit_of(p, its) for p, its in zip((first, second), far, strict=True))
+    cost = RARE + 5 * PARAMETER + said + bowed + lacking  # its two ends, and where the pen was lifted
+    names = (first.index, second.index)
+    return _bar(names, cost, line)
+
+
+def _bar(names: tuple[int, ...], cost: float, line: Array) -> Fitted:
+    return Fitted("bar", names, cost, line, model=RARE + 2 * len(line) * PARAMETER)
+
+
+def _turning(v: list[list[float]]) -> float:
+    """How sharply a polyline turns: each corner by 1 - cos of its angle."""
+    sides = [complex(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(v)]
+    return sum(1 - (b * a.conjugate()).real / max(abs(a) * abs(b), 1e-12) for a, b in pairwise(sides))
