@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 __all__ = ["Packing", "Part", "part"]
 
 Group = tuple[int, ...]  # of pieces of ink
@@ -13,8 +15,14 @@ Packed = tuple[Group, float]  # and what it gains
 MOST_PIECES = 400  # in one cluster: beyond, it is shading, and the best groups are taken one after another
 MOST_TRIED = 24  # groups of a piece, the best by the piece, that may outdo another
 ROUNDS = 2  # of lowering the pieces' shares in what a packing may gain
-# looks at groups, in one cluster: shading and grids, where no set is right, end with the best so far
-MOST_LOOKS = 100_000
+FEW_LOOKS = (
+    100_000  # looks at groups, in one cluster, before those that can be in no better packing are left out
+)
+MOST_LOOKS = 400_000  # and after: shading and grids, where no set is right, end with the best so far
+DESCENTS = 100  # steps by which the prices of pieces are lowered,
+PATIENCE = 5  # of which so many without gain halve the steps after,
+OFTEN = 5  # and one in so many tries the packing that the prices speak for
+CLOSE = 1e-6  # of gains: what is no more is no difference
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -177,42 +185,104 @@ def _greedy(groups: Sequence[Packed]) -> list[int]:
     return out
 
 
-def _shares(groups: Sequence[Packed]) -> dict[int, float]:
+def _shares(groups: Sequence[Packed], share: dict[int, float] | None = None) -> dict[int, float]:
     """What each piece can bring, so that no group gains more than its pieces' shares: no packing gains more than all.
 
-    Groups' gains split evenly, and then each piece's share lowered as far as the others' allow (the packing's linear
-    dual, descended along its coordinates).
+    Groups' gains split evenly, or the shares given raised until no group gains more, and then each piece's share
+    lowered as far as the others' allow (the packing's linear dual, descended along its coordinates).
     """
     on: dict[int, list[int]] = {}
-    share: dict[int, float] = {}
+    even = {} if share is None else dict(share)
     for g, (ink, gain) in enumerate(groups):
+        lacks = (gain if share is None else gain - sum(even[i] for i in ink)) / len(ink)
         for i in ink:
             on.setdefault(i, []).append(g)
-            share[i] = max(share.get(i, 0.0), gain / len(ink))
-    spare = [sum(share[i] for i in ink) - gain for ink, gain in groups]
+            even[i] = max(even.get(i, 0.0), lacks if share is None else even[i] + lacks)
+    spare = [sum(even[i] for i in ink) - gain for ink, gain in groups]
     for _ in range(ROUNDS):
         for i, its in on.items():
-            less = min(share[i], min(spare[g] for g in its))
-            share[i] -= less
+            less = min(even[i], min(spare[g] for g in its))
+            even[i] -= less
             for g in its:
                 spare[g] -= less
-    return share
+    return even
 
 
 def _packed(groups: Sequence[Packed]) -> list[int]:
-    """The best packing of a cluster by branch and bound, as indices.
+    """The best packing of a cluster, as indices."""
+    if len(groups) == 1:
+        return [0]
+    if len({i for ink, _ in groups for i in ink}) > MOST_PIECES:
+        return _greedy(groups)
+    best, is_best = _branched(groups, _shares(groups), FEW_LOOKS)
+    if is_best:
+        return best
+    best, kept, share = _narrowed(groups, best)
+    better = []
+    for cluster in _clusters([groups[g][0] for g in kept]):  # without the others it may have fallen apart
+        its = [kept[k] for k in cluster]
+        some = [groups[g] for g in its]
+        better += [its[k] for k in _branched(some, _shares(some, share), MOST_LOOKS)[0]]
+    return max(best, better, key=lambda found: _total(groups, found))
+
+
+def _total(groups: Sequence[Packed], some: list[int]) -> float:
+    return sum(groups[g][1] for g in some)
+
+
+def _narrowed(groups: Sequence[Packed], best: list[int]) -> tuple[list[int], list[int], dict[int, float]]:
+    """A packing no worse than `best`, the groups that may be in a better one, and what each piece can bring.
+
+    Pieces have a price, and a group's surplus is what it gains beyond those of its pieces: no packing gains more than
+    all prices and surpluses together, and none with a group that lacks something more than that without what it lacks
+    (the linear dual, descended along its subgradients as by Held, Wolfe and Crowder 1974, with steps of Polyak 1969).
+    """
+    names = list(dict.fromkeys(i for ink, _ in groups for i in ink))
+    number = {i: k for k, i in enumerate(names)}
+    sizes = np.array([len(ink) for ink, _ in groups])
+    piece = np.array([number[i] for ink, _ in groups for i in ink])
+    first, gains = np.cumsum(sizes) - sizes, np.array([gain for _, gain in groups])
+    shares = _shares(groups)
+    price = np.array([shares[i] for i in names])
+    least, prices, step, waited = np.inf, price, 1.0, 0
+    by_gain = _greedy(groups)
+    best = max(best, by_gain, key=lambda some: _total(groups, some))
+    reached = _total(groups, best)
+    for descent in range(DESCENTS):
+        surplus = gains - np.add.reduceat(price[piece], first)
+        most = float(price.sum() + surplus[surplus > 0].sum())
+        waited = 0 if most < least else waited + 1
+        if most < least:
+            least, prices = most, price
+        if waited == PATIENCE:
+            step, waited = step / 2, 0
+        if descent % OFTEN == 0:
+            found = _greedy([(ink, its) for (ink, _), its in zip(groups, surplus.tolist(), strict=True)])
+            if (gain := _total(groups, found)) > reached:
+                best, reached = found, gain
+        slope = 1.0 - np.bincount(piece[np.repeat(surplus > 0, sizes)], minlength=len(names))
+        slope[(price <= 0) & (slope > 0)] = 0.0
+        steep = float(slope @ slope)
+        if least - reached < CLOSE or not steep:
+            break
+        price = np.maximum(price - step * (most - reached) / steep * slope, 0.0)
+    surplus = gains - np.add.reduceat(prices[piece], first)
+    kept: list[int] = np.flatnonzero(least + np.minimum(surplus, 0.0) > reached + CLOSE).tolist()
+    return best, kept, dict(zip(names, prices.tolist(), strict=True))
+
+
+def _branched(groups: Sequence[Packed], share: dict[int, float], looks: int) -> tuple[list[int], bool]:
+    """The best packing of a cluster by branch and bound, as indices, and whether it is that: with no more than so many
+    looks at groups it may not be.
+
+    share: what each piece can bring, as of `_shares`.
 
     Take the first piece of ink still open, try every group that has it and leaving it out, and give up where even
     the best share of each remaining piece cannot win, or where the same pieces were settled before with no less gain.
     """
-    if len(groups) == 1:
-        return [0]
     order = _swept([ink for ink, _ in groups])
-    if len(order) > MOST_PIECES:
-        return _greedy(groups)
     bit = {i: 1 << k for k, i in enumerate(order)}
     every = (1 << len(bit)) - 1
-    share = _shares(groups)
     # For each piece the groups that have it, the best first: index, pieces as bits, gain, hope given up.
     choices: dict[int, list[tuple[int, int, float, float]]] = {b: [] for b in bit.values()}
     for g in sorted(range(len(groups)), key=lambda g: -groups[g][1]):
@@ -220,7 +290,7 @@ def _packed(groups: Sequence[Packed]) -> list[int]:
         choice = (g, sum(bit[i] for i in ink), gain, sum(share[i] for i in ink))
         for i in ink:
             choices[bit[i]].append(choice)
-    share_of = {bit[i]: hope for i, hope in share.items()}
+    share_of = {b: share[i] for i, b in bit.items()}
     best, best_set = -1.0, list[int]()
     reached: dict[int, float] = {}  # by the pieces that are settled, the gain that they were settled with
     picked: list[int] = []
@@ -230,7 +300,7 @@ def _packed(groups: Sequence[Packed]) -> list[int]:
         nonlocal best, best_set, looked
         if gain > best:
             best, best_set = gain, list(picked)
-        if gain + hope <= best or reached.get(settled, -1.0) >= gain or looked > MOST_LOOKS:
+        if gain + hope <= best or reached.get(settled, -1.0) >= gain or looked > looks:
             return
         reached[settled] = gain
         free = every & ~settled
@@ -245,9 +315,5 @@ def _packed(groups: Sequence[Packed]) -> list[int]:
                 picked.pop()
         branch(settled | first, gain, hope - share_of[first])
 
-    branch(0, 0.0, sum(share.values()))
-    if looked > MOST_LOOKS:
-        greedy = _greedy(groups)
-        if sum(groups[g][1] for g in greedy) > best:
-            return greedy
-    return best_set
+    branch(0, 0.0, sum(share_of.values()))
+    return best_set, looked <= looks

@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from scipy.optimize import Bounds, LinearConstraint, milp
 
 from sketch.search import Packing, part
 
@@ -66,6 +67,32 @@ def test_a_long_row_in_any_order_is_packed_exactly(seed: int) -> None:
     ink = [i for g in chosen for i in groups[g]]
     assert len(ink) == len(set(ink))
     assert sum(gains[g] for g in chosen) == pytest.approx(best[count])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_tangle_of_groups_that_all_gain_alike_is_packed_exactly(seed: int) -> None:
+    """As dense drawings on paper are: nearly all groups of pieces beside one another are about as good."""
+    rng = np.random.default_rng(seed)
+    at = rng.uniform(0, 1, (40, 2))
+    groups, gains = [], []
+    for _ in range(160):
+        near = np.argsort(np.hypot(*(at - at[rng.integers(40)]).T))[: rng.integers(4, 16)]
+        some = rng.choice(near, size=min(len(near), int(rng.integers(3, 10))), replace=False)
+        groups.append(tuple(some.tolist()))
+        gains.append(len(some) * float(rng.uniform(32, 40)))
+    has = np.zeros((40, len(groups)))
+    for g, group in enumerate(groups):
+        has[list(group), g] = 1
+    solved = milp(
+        -np.array(gains),
+        constraints=LinearConstraint(has, ub=1),
+        integrality=np.ones(160),
+        bounds=Bounds(0, 1),
+    )
+    chosen = best_packing(groups, gains)
+    ink = [i for g in chosen for i in groups[g]]
+    assert len(ink) == len(set(ink))
+    assert sum(gains[g] for g in chosen) == pytest.approx(-solved.fun)
 
 
 def test_what_changed_is_packed_anew_and_the_rest_kept() -> None:
