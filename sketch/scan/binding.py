@@ -29,8 +29,10 @@ __all__ = [
     "heading",
     "link",
     "pieces",
+    "smoothed",
     "thin",
     "trace",
+    "turns",
 ]
 
 _MASK = np.ctypeslib.ndpointer(np.uint8, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))
@@ -60,6 +62,10 @@ def _library() -> ctypes.CDLL:
     core.ink_bend.restype = double
     core.ink_heading.argtypes = [pointer, int32, pointer, double, double, pointer]
     core.ink_heading.restype = None
+    core.ink_turns.argtypes = [pointer, int32, int32, pointer]
+    core.ink_turns.restype = None
+    core.ink_smooth.argtypes = [pointer, int32, pointer, int32, int32, pointer]
+    core.ink_smooth.restype = None
     core.ink_length.argtypes = [pointer, int32]
     core.ink_length.restype = double
     core.ink_coarseness.argtypes = [*[pointer] * 3, int32, pointer, int32, int32, double, double]
@@ -107,6 +113,25 @@ def course_length(points: Points) -> float:
     """The length of a course, (n, 2) [pixels]."""
     line = np.ascontiguousarray(points)
     return float(_library().ink_length(address(line), len(line)))
+
+
+def turns(points: Points, cut: int) -> NDArray[np.float64]:
+    """By how much a chain, (n, 2) [pixels], turns within `cut` points to either side of each, as if it went around
+    [rad], (n,)."""
+    line, out = np.ascontiguousarray(points), np.empty(len(points))
+    _library().ink_turns(address(line), len(line), cut, address(out))
+    return out
+
+
+def smoothed(points: Points, weights: NDArray[np.float64], *, closed: bool) -> Points:
+    """A chain, (n, 2), smoothed along itself: each point becomes the mean of those around it with these weights, an odd
+    number.
+
+    closed: whether the last point leads to the first; else both stay.
+    """
+    line, out = np.ascontiguousarray(points), np.empty((len(points), 2))
+    _library().ink_smooth(address(line), len(line), address(weights), len(weights) // 2, closed, address(out))
+    return out
 
 
 def heading(points: Points, centre: Points, reach: float, sight: float) -> tuple[Points, Points]:

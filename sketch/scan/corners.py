@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.scan.binding import turns
 from sketch.scan.graph import RING, Graph
 from sketch.scan.quantiles import median
 from sketch.typing import Points
@@ -36,8 +37,9 @@ def sharpen_corners(graph: Graph, distance: NDArray[Any], pen: float) -> None:
         if len(points) < 2 * (cut + side) + 3:
             continue
         if closed:  # begin where it bends the least all around
-            around = np.ones(2 * (cut + side) + 1)
-            turn = np.convolve(np.pad(_turns(points, cut, True), cut + side, "wrap"), around, "valid")
+            turn, reach = turns(points, cut), cut + side
+            around = np.concatenate([turn[-reach:], turn, turn[:reach]])
+            turn = np.convolve(around, np.ones(2 * reach + 1), "valid")
             points = np.roll(points, -int(np.argmin(turn)), axis=0)
         points = _sharpened(points, distance, wide, cut, side)
         edge.points = np.concatenate([points, points[:1]]) if closed else points
@@ -48,25 +50,13 @@ def begin_at_corner(points: Points, pen: float) -> Points:
     cut = max(round(CUT * pen), 1)
     if len(points) < 4 * cut or not np.array_equal(points[0], points[-1]):
         return points
-    around = points[:-1]
-    around = np.roll(around, -int(np.argmax(_turns(around, cut, True))), axis=0)
-    return np.concatenate([around, around[:1]])
-
-
-def _turns(points: Points, cut: int, closed: bool) -> NDArray[np.float64]:
-    """By how much a chain turns within `cut` points to either side of each point [rad]; 0 near open ends."""
-    before = points - np.roll(points, cut, axis=0)
-    after = np.roll(points, -cut, axis=0) - points
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turn = np.abs(np.arctan2(cross, (before * after).sum(axis=1)))
-    if not closed:
-        turn[:cut] = 0
-        turn[len(turn) - cut :] = 0
-    return np.asarray(turn)
+    begin = int(turns(points[:-1], cut).argmax())
+    return np.concatenate([points[begin:-1], points[: begin + 1]])
 
 
 def _sharpened(points: Points, distance: NDArray[Any], pen: float, cut: int, side: int) -> Points:
-    turn = _turns(points, cut, False)
+    turn = turns(points, cut)
+    turn[:cut] = turn[len(turn) - cut :] = 0  # nobody knows near open ends
     pieces, done = [], 0
     at = np.flatnonzero(turn > SHARP)
     groups = [group for group in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if len(group)]

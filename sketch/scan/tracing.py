@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import count
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import Chains, distances, thin, trace
+from sketch.scan.binding import Chains, distances, smoothed, thin, trace
 from sketch.scan.broken import is_broken
 from sketch.scan.corners import begin_at_corner, sharpen_corners
 from sketch.scan.crossed import crossed
@@ -280,21 +282,17 @@ def _points(ways: list[Way]) -> list[Points]:
 
 def smooth(points: Points, sigma: float) -> Points:
     """Points smoothed along the stroke by a Gaussian of `sigma` points; the ends of an open stroke stay."""
-    reach = int(np.ceil(3 * sigma))
-    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
-    kernel /= kernel.sum()
-    n = len(points)
-    if n < 4:
+    if len(points) < 4:
         return points
-    if np.hypot(*(points[0] - points[-1])) < 1e-9:
-        index = np.arange(-reach, n - 1 + reach) % (n - 1)
-        padded = points[index]
-    else:
-        k = min(reach, n - 1)
-        before, after = 2 * points[0] - points[k:0:-1], 2 * points[-1] - points[-2 : -2 - k : -1]
-        fill = reach - k
-        padded = np.concatenate(
-            [np.repeat(before[:1], fill, 0), before, points, after, np.repeat(after[-1:], fill, 0)]
-        )
-    out = np.stack([np.convolve(padded[:, d], kernel, "valid") for d in (0, 1)], axis=1)
-    return np.concatenate([out, out[:1]]) if len(out) == n - 1 else out
+    if math.dist(*points[[0, -1]].tolist()) < 1e-9:
+        out = smoothed(points[:-1], _gaussian(sigma), closed=True)
+        return np.concatenate([out, out[:1]])
+    return smoothed(points, _gaussian(sigma), closed=False)
+
+
+@cache
+def _gaussian(sigma: float) -> NDArray[np.float64]:
+    """The weights of a Gaussian, which add up to one."""
+    reach = int(np.ceil(3 * sigma))
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    return np.asarray(weights / weights.sum())

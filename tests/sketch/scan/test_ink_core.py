@@ -17,6 +17,8 @@ from sketch.scan.binding import (
     distances,
     heading,
     link,
+    smoothed,
+    turns,
 )
 from sketch.scan.fills import fill_grain
 from sketch.scoring import misfit
@@ -108,6 +110,29 @@ def test_the_bend_of_an_arc_is_its_curvature() -> None:
     assert bend(corner, corner[0], 11.0, 0.04) == 0
     assert bend(arc[:4], arc[0], 12.0, 0.04) == 0
     assert course_length(arc) == pytest.approx(60, rel=1e-4)
+
+
+@pytest.mark.parametrize("cut", [1, 4, 9])
+def test_a_chain_turns_as_much_as_its_directions_before_and_behind(cut: int) -> None:
+    points = np.random.default_rng(cut).uniform(0, 50, (9, 2))
+    before, after = points - np.roll(points, cut, axis=0), np.roll(points, -cut, axis=0) - points
+    angles = [np.arctan2(way[:, 1], way[:, 0]) for way in (before, after)]
+    turn = np.abs((angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi)
+    assert np.allclose(turns(points, cut), turn if cut < 9 else 0.0)
+
+
+@pytest.mark.parametrize("count", [4, 5, 40])
+def test_a_closed_chain_is_smoothed_all_around_and_an_open_one_keeps_its_ends(count: int) -> None:
+    points = np.random.default_rng(count).uniform(0, 50, (count, 2))
+    weights = np.array([0.05, 0.1, 0.2, 0.3, 0.2, 0.1, 0.05])
+    around = points[np.arange(-3, count + 3) % count]
+    expected = np.stack([np.convolve(around[:, k], weights, "valid") for k in (0, 1)], axis=1)
+    assert np.allclose(smoothed(points, weights, closed=True), expected)
+    out = smoothed(points, weights, closed=False)
+    assert np.allclose(out[[0, -1]], points[[0, -1]])
+    assert np.allclose(out[3:-3], expected[3:-3])
+    line = np.linspace((2.0, 9.0), (7.0, 3.0), count)
+    assert np.allclose(smoothed(line, weights, closed=False)[3:-3], line[3:-3])
 
 
 def test_a_shape_owes_for_ink_that_something_smaller_would_say_more_precisely() -> None:
