@@ -23,6 +23,7 @@ __all__ = [
     "along",
     "beside",
     "course",
+    "course_around",
     "cuts",
     "depth",
     "fit_arrows",
@@ -34,8 +35,10 @@ __all__ = [
     "measure",
     "off_outline",
     "place",
+    "reaching",
     "ring",
     "touch",
+    "touching",
     "words",
 ]
 
@@ -68,6 +71,9 @@ _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, 
 )
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
+_around = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_course_around", _lib))
+_touching = ctypes.CFUNCTYPE(_int, _int, _pointer, *[_double] * 4, _pointer)(("ink_touching", _lib))
+_reaching = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 2, *[_double] * 5, _pointer)(("ink_reaching", _lib))
 _placed = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer, _int, _int)(("ink_placed", _lib))
 _lend = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, *[_pointer] * 2, _double, _int, _pointer)(
     ("ink_lend", _lib)
@@ -316,7 +322,27 @@ def along(
         address(found),
     )
     x0, y0, x1, y1 = box.tolist()
-    return found[:count].tolist(), (x0, y0, x1, y1)
+    return _numbers(found, count), (x0, y0, x1, y1)
+
+
+def touching(boxes: Array, box: Box) -> list[int]:
+    """The pieces whose boxes, (n, 4), have a point in one."""
+    found = np.empty(len(boxes), dtype=np.int32)
+    count = _touching(len(boxes), address(boxes), *box, address(found))
+    return _numbers(found, count)
+
+
+def reaching(boxes: Array, strokes: Strokes, box: Box, reach: float) -> list[int]:
+    """The pieces that may come within `reach` of two places, given the box around these [pixels] (see core/near.c)."""
+    found = np.empty(len(boxes), dtype=np.int32)
+    count = _reaching(len(boxes), address(boxes), address(strokes.measure), *box, reach, address(found))
+    return _numbers(found, count)
+
+
+def _numbers(found: NDArray[np.int32], count: int) -> list[int]:
+    """The first so many."""
+    numbers: list[int] = found[:count].tolist()
+    return numbers
 
 
 def beside(boxes: Array, bodies: Array) -> list[list[int]]:
@@ -348,6 +374,14 @@ def course(points: Array, pen: float) -> Array | None:
     line = np.empty((COURSE + 1, 2))
     given = np.ascontiguousarray(points)
     return line if _course(address(given), len(given), pen, address(line)) else None
+
+
+def course_around(points: Array) -> Array | None:
+    """Ink that goes once around, (n, 2), as a closed outline of COURSE corners in equal steps, without what runs beyond
+    its closing [pixels]; None where it crosses itself."""
+    outline, along = np.empty((COURSE, 2)), np.empty(len(points))
+    given = np.ascontiguousarray(points)
+    return outline if _around(address(given), len(given), address(along), address(outline)) else None
 
 
 def off_outline(strokes: Strokes, names: Sequence[int], outline: Array) -> list[float]:

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from sketch.kernel import ClosedFit, fit_closed, is_simple, off_outline, ring
+from sketch.kernel import ClosedFit, course_around, fit_closed, off_outline, ring
 from sketch.loose import Chain
 from sketch.pieces import Page, Piece
 from sketch.sampling import unevenness
@@ -42,7 +42,6 @@ ELLIPSE = 7.5  # nats that an ellipse takes beyond a circle: with 1.6 times as l
 FREEFORM = 32.0  # nats that an outline of any course, a hill or a cloud, is rarer than a polygon
 ARC = 9.0  # nats to say each of the arcs that an outline of any course goes in: a bow beside the corner
 WIDE = 0.25  # of its ink: where more is missing, nobody can say which course it took; as in core/sides.c
-COURSE = 32  # corners that it is drawn with
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.h
 SHARED = 10.0  # nats that an outline is rarer of which a side is another's
 GAP = 4.0  # nats for each observation that an outline lacks
@@ -153,8 +152,8 @@ def _read(
     ):  # else it is not said in fewer however well it fits
         arcs = range(3, MOST_SIDES + 1)
         bent = FREEFORM + gaps + min(misfit(fit.residual[k], count) + ARC * k for k in arcs)
-        course = _course(parts) if bent < least else None
-        if course is not None and is_simple(course):
+        course = course_around(np.concatenate(parts)) if bent < least else None
+        if course is not None:
             out.append(fitted("free", cost=bent, outline=course, model=FREEFORM + 3 * ARC))
     return out
 
@@ -211,19 +210,6 @@ def _unlike(corners: Array) -> float:
     """The least angle between opposite sides of a quadrilateral [rad]."""
     a, b, c, d = (complex(x, y) for x, y in corners.tolist())
     return min(abs(cmath.phase((q - p) * (r - s).conjugate())) for p, q, r, s in ((a, b, c, d), (b, c, d, a)))
-
-
-def _course(parts: list[Array]) -> Array:
-    """Ink as a closed outline of COURSE corners in equal steps, without what runs beyond its closing [pixels]."""
-    line = np.concatenate(parts)
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
-    t = np.linspace(0, along[-1], 4 * COURSE)
-    dense = np.stack([np.interp(t, along, line[:, k]) for k in (0, 1)], axis=1)
-    few = COURSE // 2
-    apart = np.hypot(*(dense[:few, None] - dense[None, -few:]).transpose(2, 0, 1))
-    first, last = np.unravel_index(int(apart.argmin()), apart.shape)
-    ring = dense[first : len(dense) - few + last + 1]
-    return np.ascontiguousarray(ring[np.linspace(0, len(ring), COURSE, endpoint=False).astype(int)])
 
 
 def gone_over(page: Page, fitted: Fitted, pieces: Sequence[Piece]) -> list[float]:

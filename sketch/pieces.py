@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from sketch.ink import Sketch
-from sketch.kernel import along, heads, joined, measure
+from sketch.kernel import along, heads, joined, measure, reaching, touching
 from sketch.loose import Chain, End, LooseEnds
 from sketch.scoring import unread
 from sketch.typing import Array, Point
@@ -195,21 +195,14 @@ class Page:
     def touching(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:
         """The pieces whose bounding box has a point in this one."""
         self.looked.boxes.append((x0, y0, x1, y1))
-        b = self._boxes
-        inside = (b[:, 0] <= x1) & (b[:, 1] <= y1) & (b[:, 2] >= x0) & (b[:, 3] >= y0)
-        return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
+        return [self.pieces[i] for i in touching(self._boxes, (x0, y0, x1, y1))]
 
     def reaching(self, a: Point, b: Point, reach: float) -> list[Piece]:
         """The pieces of which both of two places are within `reach` [pixels], for all that their boxes tell; of a long
         one it is a step of its samples more."""
         (x0, x1), (y0, y1) = sorted((a[0], b[0])), sorted((a[1], b[1]))
-        low, high = (x0 - reach, y0 - reach), (x1 + reach, y1 + reach)
-        self.looked.boxes.append((*low, *high))
-        of = self._boxes
-        inside = (of[:, :2] <= high).all(axis=1) & (of[:, 2:] >= low).all(axis=1)
-        near = reach + self.strokes.measure[:, :1] / self.strokes.samples.shape[1]
-        inside &= (of[:, :2] - near <= (x0, y0)).all(axis=1) & (of[:, 2:] + near >= (x1, y1)).all(axis=1)
-        return [self.pieces[i] for i in np.flatnonzero(inside).tolist()]
+        self.looked.boxes.append((x0 - reach, y0 - reach, x1 + reach, y1 + reach))
+        return [self.pieces[i] for i in reaching(self._boxes, self.strokes, (x0, y0, x1, y1), reach)]
 
     def heads(
         self, shaft: Piece, tips: tuple[Point, Point], reach: float, span: float, size: float

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from pages import page
 
-from sketch.kernel import along, beside, fit_closed, lent, measure, off_outline
+from sketch.kernel import along, beside, course_around, fit_closed, lent, measure, off_outline
 from sketch.loose import LooseEnds
 from sketch.pieces import page_of
 
@@ -126,6 +126,36 @@ def test_ink_along_an_outline_and_its_distance() -> None:
         assert (p.index in near) == (inside and places)
     empty = measure([])
     assert along(np.empty((0, 4)), empty, np.empty(0), ring, 1.0)[0] == []
+
+
+def test_pieces_near_a_place_are_those_whose_boxes_are() -> None:
+    ink = page_of(page(scattered(4, 60)))
+    ink.remove(7)
+    some, both = set(), set()
+    for p in ink.pieces.values():
+        x0, y0, x1, y1 = p.box
+        if x0 <= 160 and y0 <= 130 and x1 >= 90 and y1 >= 120:
+            some.add(p.index)
+        # a step of its samples beyond the reach, and with a point within it
+        reach = 25 + p.length / 48
+        beyond = max(x0 - 100, y0 - 110, 150 - x1, 140 - y1)
+        if beyond <= reach and max(x0 - 150, y0 - 140, 100 - x1, 110 - y1) <= 25:
+            both.add(p.index)
+    assert {p.index for p in ink.touching(90, 120, 160, 130)} == some
+    assert {p.index for p in ink.reaching((150, 110), (100, 140), 25)} == both
+    assert 0 < len(both) < len(some) < len(ink.pieces)
+
+
+def test_a_course_around_ends_where_it_closes() -> None:
+    t = np.linspace(-0.2, 2 * math.pi + 0.1, 200)
+    spiral = np.stack([np.cos(t), np.sin(t)], axis=1) * (100 + 3 * t[:, None])
+    outline = course_around(spiral)
+    assert outline is not None
+    angles = np.unwrap(np.arctan2(outline[:, 1], outline[:, 0]))
+    assert np.all(np.diff(angles) > 0)
+    assert angles[-1] - angles[0] < 2 * math.pi < angles[-1] - angles[0] + 0.4
+    eight = np.stack([100 * np.sin(t), 50 * np.sin(2 * t)], axis=1)
+    assert course_around(eight) is None
 
 
 def test_bodies_beside_marks_however_many() -> None:
