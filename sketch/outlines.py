@@ -13,7 +13,7 @@ import numpy as np
 from sketch.kernel import ClosedFit, course_around, fit_closed, off_outline, ring
 from sketch.loose import Chain
 from sketch.pieces import Page, Piece
-from sketch.sampling import unevenness
+from sketch.sampling import arced, unevenness
 from sketch.scoring import FREE, PARAMETER, Fitted, misfit
 from sketch.typing import Array
 
@@ -122,30 +122,37 @@ def _read(
     said = _SAID.copy()
     if math.isfinite(fit.cost[4]):
         said[4] += min(0.5 * (_unlike(fit.vertices(4)) / ALIKE) ** 2, IRREGULAR)
-    total = [sum(nats) for nats in zip(fit.cost, fit.lacks, said, strict=True)]
+    points, rough = _few(parts, [pieces[i].given for i in names]), fit.cost
+    if points:
+        rough = [c + _too_near(fit.residual[k], count, k, points) for k, c in enumerate(rough)]
+    total = [sum(nats) for nats in zip(rough, fit.lacks, said, strict=True)]
     least = min(total[3:])
     for k in range(FEWEST, MOST + 1):
         clean = _NEARLY_SAID[k] - said[k]
         if total[k] + clean < least + ALSO:
             total[k] += min(clean + _irregular(fit, k), 0.0)
-    ellipse = _ellipse(fit)
-    steps, even, cornered = _stepping([pieces[i].given for i in names], ellipse)
+    rounded, ellipse = fit, _ellipse(fit)
+    if points and ellipse is not None:
+        # along something round the ink between two points is no chord, but an arc of it
+        ink = [*(arced(few, *ellipse) for few in points), *parts[len(points) :]]
+        rounded = fit_closed(ink, LEAST_AXIS * page.size, CAP, count, 2 * CORNER, 0.0, GAP)
+        ellipse = _ellipse(rounded)
+    steps, even, cornered = _stepping(points, ellipse)
     for k in range(3, MOST + 1):
         total[k] += cornered
     sides, second = sorted(range(3, MOST_SIDES + 1), key=total.__getitem__)[:2]
     evenly, straight = _turning(fit, sides, max(steps, min(sum(map(len, parts)) - len(parts), MANY)))
-    out = _round(fit, ellipse, fitted, gaps + evenly + even)
+    out = _round(rounded, ellipse, fitted, gaps + evenly + even)
     if math.isfinite(fit.cost[sides]):
-        outline, rough, ahead = fit.vertices(sides), fit.cost[sides], (second, total[second] - total[sides])
+        outline, ahead = fit.vertices(sides), (second, total[second] - total[sides])
         cost = total[sides] + besides + straight
-        model = 2 * sides * CORNER
-        out.append(fitted("polygon", cost=cost, outline=outline, model=model, rough=rough, next=ahead))
+        model, far = 2 * sides * CORNER, rough[sides]
+        out.append(fitted("polygon", cost=cost, outline=outline, model=model, rough=far, next=ahead))
     if math.isfinite(fit.extra):
         off = fit.residual[4]
-        unlike = misfit(off + fit.extra, count) - misfit(off, count)
-        rough = fit.cost[4] + unlike
-        cost = rough + BOX + fit.lacks[4] + besides + cornered
-        out.append(fitted("rectangle", cost=cost, outline=fit.rectangle, model=BOX, rough=rough))
+        far = rough[4] + misfit(off + fit.extra, count) - misfit(off, count)
+        cost = far + BOX + fit.lacks[4] + besides + cornered
+        out.append(fitted("rectangle", cost=cost, outline=fit.rectangle, model=BOX, rough=far))
     least = min(f.cost for f in out)
     if (
         fit.gap < WIDE * fit.ink and FREEFORM + gaps + 3 * ARC < least
@@ -172,19 +179,41 @@ def _turning(fit: ClosedFit, sides: int, steps: int) -> tuple[float, float]:
     return 0.5 * ((1 - off - EVENLY) / TURNING) ** 2, 0.5 * (off / TURNING) ** 2
 
 
-def _stepping(given: list[Array | None], ellipse: tuple[Array, Array] | None) -> tuple[int, float, float]:
+def _few(parts: list[Array], given: list[Array | None]) -> list[Array]:
+    """The points that ink came with, where they are few, in equal steps, and none of its parts is without; else none.
+
+    parts: of the ink, those of pieces first, then sides that are none of theirs.  given: as of the pieces.
+    """
+    came = {(x, y) for points in given if points is not None for x, y in points.tolist()}
+    own = [part[[(x, y) in came for x, y in part.tolist()]] for part in parts[: len(given)]] if came else []
+    steps = sum(map(len, own)) - len(own)
+    return own if MOST < steps < MANY and all(len(points) > 1 for points in own) else []
+
+
+def _too_near(square: float, count: float, sides: int, points: list[Array]) -> float:
+    """Nats that a polygon's ink is further off it than it seems, where its points are few: the corners follow them.
+
+    n points in equal steps say 2 n - 1 numbers, of which the corners take two each.
+    square: mean squared distance, in the frame.  count: observations.
+    """
+    said = 2 * sum(map(len, points)) - len(points)
+    if not said or not math.isfinite(square):
+        return 0.0
+    return misfit(square * said / max(said - 2 * sides, 1), count) - misfit(square, count)
+
+
+def _stepping(points: list[Array], ellipse: tuple[Array, Array] | None) -> tuple[int, float, float]:
     """How many steps the points of ink are apart, as far as there are few, and the nats to say how even they are, of
     something round and of a polygon of few sides.
 
     Between few points nobody sees how the ink turns; but in equal steps of length along it they are nearer where a
     corner lies between them, and equally far apart along something round.
     """
-    parts = [points for points in given if points is not None and len(points) > 1]
-    steps = sum(map(len, parts)) - len(parts)
-    if ellipse is None or len(parts) < len(given) or not MOST < steps < MANY:
+    if ellipse is None or not points:
         return MANY, 0.0, 0.0
-    off = math.log(max(unevenness(parts, *ellipse), EVEN_STEPS / 10))
+    off = math.log(max(unevenness(points, *ellipse), EVEN_STEPS / 10))
     even, cornered = max(off - math.log(EVEN_STEPS), 0.0), max(math.log(CORNERED) - off, 0.0)
+    steps = sum(map(len, points)) - len(points)
     return steps, 0.5 * (even / STEPPING) ** 2, min(0.5 * (cornered / STEPPING) ** 2, CHANCE)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from sketch.typing import Array
 
-__all__ = ["Sampled", "sampled", "unevenness"]
+__all__ = ["Sampled", "arced", "sampled", "unevenness"]
 
 ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 FEW = 24  # points of a stroke: in more a corner that lies between two of them is hardly cut
@@ -27,6 +27,7 @@ HALVINGS, NEWTON = 20, 8  # steps until a corner's cut, and its place, are found
 SHORT = 0.72, 0.9  # of a step: a chord of such a length has a corner, and not two
 LEG = 0.15  # of a step: what is shorter does not say where the ink comes from
 ASTRAY = 0.5  # of a step: what is off by more is no part of the course
+ARC = 6  # parts of the way between two points, along something round
 LOOP = 4.0  # rad: what turns by more altogether goes around something, and has its corners outward
 TURN, SPIKE = 0.35, 2.7  # rad: what turns by less is no corner, and by more none that one side alone can tell
 
@@ -69,6 +70,18 @@ def unevenness(parts: list[Array], middle: Array, axes: Array) -> float:
         squares += sum(min(abs(step / usual - 1), ASTRAY) ** 2 for step in steps)
         count += len(steps)
     return math.sqrt(squares / count)
+
+
+def arced(points: Array, middle: Array, axes: Array) -> Array:
+    """Few points, (n, 2), with the ink between them if it goes along an ellipse; off which it is as far as they are.
+
+    middle, axes: of the ellipse, half axes as columns, (2, 2) [pixels].
+    """
+    x, y = np.linalg.solve(axes, (points - middle).T)
+    off, angle = np.hypot(x, y), np.unwrap(np.arctan2(y, x))
+    share = np.arange(0, len(points) - 1 + 0.5 / ARC, 1 / ARC)
+    off, angle = (np.interp(share, np.arange(len(points)), v) for v in (off, angle))
+    return np.asarray(middle + (off * np.stack([np.cos(angle), np.sin(angle)])).T @ axes.T)
 
 
 def _thinned(points: Array) -> Array:

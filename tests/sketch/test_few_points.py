@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,8 +12,8 @@ from pages import box, kinds, ngon, read
 
 from sketch.outlines import read_outline
 from sketch.pieces import Page
-from sketch.sampling import sampled, unevenness
-from sketch.synthetic import HANDS, circle, outline
+from sketch.sampling import arced, sampled, unevenness
+from sketch.synthetic import HANDS, Hand, circle, ellipse, outline
 
 
 def in_steps(path: np.ndarray, count: int) -> np.ndarray:
@@ -95,6 +97,26 @@ def test_steps_are_even_along_what_is_round_and_uneven_around_corners() -> None:
         five = middle + 1.1 * (np.array(ngon(5, 0, 0, 1)) @ axes.T)
         corners = [(x, y) for x, y in five.tolist()]
         assert unevenness([in_steps(closed(corners, 0.3), 10)], middle, axes) > 0.06
+
+
+def test_between_points_of_something_round_the_ink_goes_along_its_arcs() -> None:
+    middle, axes = np.array([400.0, 300.0]), np.array([[120.0, -30.0], [70.0, 50.0]])
+    angle = np.linspace(0.4, 6.9, 10)
+    points = middle + np.column_stack([np.cos(angle), np.sin(angle)]) @ axes.T
+    ink = arced(points, middle, axes)
+    assert np.allclose(ink[::6], points)
+    off = np.hypot(*np.linalg.solve(axes, (ink - middle).T))
+    assert len(ink) == 55
+    assert np.allclose(off, 1)
+
+
+def test_few_points_of_an_oval_have_no_corners() -> None:
+    read_right = 0
+    for seed, count, drift in itertools.product(range(40), (9, 10), (0.045, 0.06)):
+        rng, hand = np.random.default_rng([seed, count]), Hand(drift=drift, overshoot=0.03)
+        oval = ellipse((400, 300), (130, 62), rng.uniform(0, 6.3), hand, rng)
+        read_right += kinds(read([in_steps(s, count) for s in oval])) == kinds(read(oval))
+    assert read_right >= 148, read_right  # of 160
 
 
 def test_a_part_of_which_one_point_was_given_says_nothing_of_steps() -> None:
