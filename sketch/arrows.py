@@ -18,20 +18,26 @@ __all__ = ["likeliest_arrow", "pointing", "prefer_arrow"]
 
 # nats that the likeliest arrow is likelier than by its ink, and any other rarer: few pages have two
 ONE_ARROW = 15.0
-SECOND = 1.0  # nats that it gains more than others: what it is drawn in says nothing of which of them it is,
-SURE = 40.0  # and no more than this does how well it is drawn
+SECOND = 1.0  # nats that the likeliest arrow gains more than any other, however these are drawn
+SURE = 40.0  # nats, at most, by which how well an arrow is drawn says that it is the likeliest
 LONGEST = 10.0  # nats for each time that one is e times as long as another: what is beside a body is smaller
-BESIDE = 40.0  # nats that an arrow is rarer that runs along a body or points at one,
-NEAR = 0.4  # less, up to this share of its length from it
-# One means something else that begins at a body and points away,
-AT_BODY, AWAY = 0.25, 0.7  # so near to it, and further from it with its tip, in shares of its length;
-SAME_TAIL = 0.2  # that has its tail, as near as that, where another's is,
-ALIKE = 2.0  # times as long at most, at a right angle
-UPRIGHT = 0.4  # cosine, at most;
-MARK = 0.3  # or that has a head at its tail too: ink so large, in shares of its length,
-AT_TAIL = 0.05  # so near, on both sides
-SIDES = 0.015  # as far
+BESIDE = 40.0  # nats that an arrow is rarer that runs along a body or points at one
+NEAR = 0.4  # of an arrow's length: as far from it a body has no part in what it means, nearer some of BESIDE
 PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)  # shares of its length at which it is asked how far off a body it is
+
+# An arrow that begins at a body and points away says how that moves.
+AT_BODY = 0.25  # of its length: as near to the body is its tail
+AWAY = 0.7  # of its length: as much further from the body is its tip
+
+# Two arrows of one place, at a right angle, are a pair of axes.
+SAME_TAIL = 0.2  # of the shorter one's length: as near to each other are their tails
+ALIKE = 2.0  # times that one is as long as the other, at most
+UPRIGHT = 0.4  # cosine of the angle between them, at most
+
+# An arrow with a head at its tail too says how long something is.
+MARK = 0.3  # of its length: strokes of that head are no larger
+AT_TAIL = 0.05  # of its length: as near to the tail they come
+SIDES = 0.015  # of its length: as far they reach to either side of it
 
 
 def pointing(

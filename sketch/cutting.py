@@ -19,8 +19,8 @@ from sketch.typing import Array
 __all__ = ["things_in"]
 
 WAY = 2  # the kind of part, as ink_cut numbers them, that leads from one thing to the next
-CUT = 10.0  # nats that going on to another thing, or on the way to it, is rarer than lifting the pen
-LEAST = (20.0, 40.0)  # nats that no loop, and no line, is said in fewer
+CUT = 10.0  # nats for each part beyond the first: going on to the next thing is rarer than lifting the pen
+LEAST = (20.0, 40.0)  # nats of the cheapest loop, and of the cheapest line, by the numbers of ink_cut
 OPEN = 0.2  # of its length: a stroke whose ends are further apart is no outline
 
 

@@ -18,9 +18,9 @@ from sketch.typing import Array, Point
 __all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "in_line", "shafts"]
 
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
-MOST_CHAINS = 16  # from one piece that are fitted, the tightest first,
-MOST_OPEN = 5  # and of those with wide gaps, which are many in a tangle
-WIDE = 0.1  # of a chain's ink
+MOST_CHAINS = 16  # chains from one piece that are fitted, the tightest first
+MOST_OPEN = 5  # likewise, of chains with wide gaps, which are many in a tangle
+WIDE = 0.1  # of a chain's ink: gaps that are wide
 PART = 0.015  # of a chain's ink: gaps that a further part is worth, as it is one of several that lie near
 REFLEX = 0.06  # likewise for each rad that it turns back; as in core/chains.c
 ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that they are drawn up to; as in core/lend.c

@@ -11,13 +11,14 @@ from sketch.pieces import Page, Piece
 
 __all__ = ["hatching"]
 
-FEWEST = 5  # strokes of a row, that mean nothing but for one or two
-BUT = 2
-STRAIGHT = 0.05  # of its length, is how far a stroke is off a line
-LONGER = 1.8  # times that one is as long as the next, at most
-PARALLEL = 0.35  # sine of the angle between them
-ASIDE = 0.15, 2.5  # of its length: how far one is beside the other,
-AHEAD = 1.5  # and ahead of it, at most
+FEWEST = 5  # strokes of a row
+BUT = 2  # strokes of a row, at most, that may mean something by themselves
+STRAIGHT = 0.05  # of its length: how far a stroke is off a line, at most
+LONG = 0.9  # of its length: how far apart its ends are, at least
+LONGER = 1.8  # times that a stroke is as long as the next one, at most
+PARALLEL = 0.35  # sine of the angle between a stroke and the next, at most
+ASIDE = 0.15, 2.5  # of a stroke's length: how far the next one is beside it, at least and at most
+AHEAD = 1.5  # of a stroke's length: how far the next one is ahead of it, at most
 
 
 def hatching(page: Page, largest: float, idle: Set[int]) -> set[int]:
@@ -27,7 +28,7 @@ def hatching(page: Page, largest: float, idle: Set[int]) -> set[int]:
     """
 
     def may_be(p: Piece) -> bool:
-        return p.gap < largest and p.gap > 0.9 * p.length and p.straight < STRAIGHT
+        return p.gap < largest and p.gap > LONG * p.length and p.straight < STRAIGHT
 
     if sum(may_be(page.pieces[i]) for i in idle) < FEWEST - BUT:
         return set()

@@ -16,20 +16,25 @@ __all__ = ["Sampled", "arced", "sampled", "unevenness"]
 
 ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 FEW = 24  # points of a stroke: in more a corner that lies between two of them is hardly cut
-FULL = 0.95, 0.9  # of the usual step: a chord that is longer is straight
+# of the longest chord: one that is longer is straight; the second share where the first leaves few
+FULL = 0.95, 0.9
 STEPS = 3  # full chords, at least, and a third of all: else the points are not in equal steps
 HAIRPIN = 1.2  # within so much of turning back [rad], a corner may be two: the end of something narrow
-OFF, LONGER = 0.05, 0.1  # of a step: how far ink is off its side's line, and a way longer than straight
-CORNER = 8.0  # nats to say one more corner; but a narrow end is likelier blunt than pointed,
-POINTED = -1.0  # nats less, the more its sides are
-ALIKE = 0.1  # parallel [rad]
-HALVINGS, NEWTON = 20, 8  # steps until a corner's cut, and its place, are found
+OFF = 0.05  # of a step: how far ink usually is off its side's line
+LONGER = 0.1  # of a step: how much longer a way usually is than straight
+CORNER = 8.0  # nats to say one more corner
+# nats that one corner takes at most where its sides are parallel: such an end is likelier blunt
+POINTED = -1.0
+ALIKE = 0.1  # [rad]: how far the sides of a blunt end usually are from parallel
+HALVINGS = 20  # halvings until a corner's cut is found
+NEWTON = 8  # Newton's steps until a corner's place is found
 SHORT = 0.72, 0.9  # of a step: a chord of such a length has a corner, and not two
 LEG = 0.15  # of a step: what is shorter does not say where the ink comes from
 ASTRAY = 0.5  # of a step: what is off by more is no part of the course
 ARC = 6  # parts of the way between two points, along something round
-LOOP = 4.0  # rad: what turns by more altogether goes around something, and has its corners outward
-TURN, SPIKE = 0.35, 2.7  # rad: what turns by less is no corner, and by more none that one side alone can tell
+LOOP = 4.0  # [rad]: what turns by more altogether goes around something, and has its corners outward
+TURN = 0.35  # [rad]: what turns by less is no corner
+SPIKE = 2.7  # [rad]: what turns by more is no corner that one side alone can tell
 
 
 class Sampled(NamedTuple):

@@ -28,9 +28,8 @@ TREMOR = 0.05  # spread of ink about what was meant, as a share of its size; of 
 SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius; as in core/outline.h
 PARAMETER = 4.0  # nats to say one parameter to that precision: about ln(page / tremor)
 FREE = 4.0  # nats an observation to say ink freely, point by point
-STRANGE = 35.0  # nats to say that something was drawn that has no meaning here,
-# and was as much as a straight line: so many observations; a tap of the pen is less of a surprise
-LINE = 11.0
+STRANGE = 35.0  # nats to say that something was drawn that has no meaning here
+LINE = 11.0  # observations in a straight line: what is less, a tap of the pen, is less of a surprise
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,9 +18,9 @@ from sketch.typing import Image
 __all__ = ["drop_faint_marks"]
 
 LONG = 2.0  # pen widths: shorter chains do not say how dark their line is
-APART = 1.3  # times as dark is what was drawn than the darkest of what was not,
+APART = 1.3  # times that what was drawn is as dark as the darkest of what was not
 FAINTER = 0.36  # of the ink's darkness: what has less was not drawn; where its edges are softer, by the square of that,
-FAINTEST = 0.7  # but no more than this
+FAINTEST = 0.7  # of the ink's darkness: what has more was drawn, however soft its edges are
 BETWEEN = 0.02  # of the ink's length that may be neither
 RIM = 2.0  # [pixels] around a mark's ink that goes with it
 

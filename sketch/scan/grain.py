@@ -19,8 +19,8 @@ __all__ = ["smoothed_grain"]
 COARSE = 12.0  # of 255: standard deviation of the bare paper's grain that is made smoother
 FINE = 7.0  # likewise, that may be left
 SIGMAS = (1.0, 1.5, 2.0, 3.0, 4.0)  # [pixels] of the smoothing, the least that does it is taken
-SAMPLES = 20_000  # pixels that the grain is measured on,
-BLOCK = 64  # in stretches of so many
+SAMPLES = 20_000  # pixels that the grain is measured on
+BLOCK = 64  # pixels of a stretch of these
 BARE = 25  # percent of the stretches that certainly show bare paper
 
 

@@ -28,11 +28,11 @@ MOST_FACES = 24  # that hang together: more are a grid, or shading
 MOST_UNIONS = 100  # that are looked at, from each face
 MOST_BODIES = 60  # of those that are convex, the likeliest
 ROWS = 32  # of a product of matrices at a time
-BODY = 20.0  # nats to say one more body,
-LEFT = 25.0  # to leave a line over,
-SHARED = 60.0  # for two outlines that are the same in full, in part for a part,
-DENTED = 100.0  # for an outline that takes nothing of its hull's area
-PIVOT = 15.0  # that a ring is likelier over two bodies than elsewhere
+BODY = 20.0  # nats to say one more body
+LEFT = 25.0  # nats to leave a line over
+SHARED = 60.0  # nats that two outlines are rarer which are the same in full; in part, a part of that
+DENTED = 100.0  # nats that an outline is rarer which takes nothing of its hull's area; some, a part of that
+PIVOT = 15.0  # nats that a ring is likelier over two bodies than elsewhere
 STRAIN = 6.0  # nats for each square radian of strain, as in `sketch.scan.settle`
 
 

@@ -13,9 +13,9 @@ from sketch.typing import Image
 __all__ = ["punched"]
 
 ROUND = 0.12  # of its width: what a hole's height may differ, and of a disc's area, its own
-ALIKE = 0.15  # of its width: what that of another may differ,
-IN_LINE = 0.1  # of how far they are apart: what one's distance to the edge may differ from another's
-RIM = 0.07  # of the picture's size: they are nearer to the edge
+ALIKE = 0.15  # of a hole's width: what that of another may differ
+IN_LINE = 0.1  # of how far two holes are apart: what their distances to the edge may differ
+RIM = 0.07  # of the picture's size: holes are nearer to the edge
 
 
 def punched(mask: Image, edge: Image | None, margin: int, pixels: list[NDArray[np.int32]]) -> list[int]:

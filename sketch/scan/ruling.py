@@ -26,9 +26,9 @@ EVEN = 0.12  # of their distance: how far they are from even spacing
 SEEN = 0.35  # of a line's length that has to be ink, where it is only thought to be
 WHOLE = 0.8  # of the picture's width: a line seen so far is seen whole
 EDGED = 0.99  # of the sheet's width: what a line has to reach at both ends to run from edge to edge
-STRAIGHT = 0.3  # [pixels] that a printed line is off a smooth one,
-TREMOR = 25  # [pixels] over as many, in which a hand's is more
-DARKER = 1.5  # than the printed line: ink on it
+STRAIGHT = 0.3  # [pixels]: how far a printed line is off a smooth one; a hand's is further
+TREMOR = 25  # [pixels] along a line over which that is told
+DARKER = 1.5  # times as dark as the printed line: ink on it
 
 
 def drop_ruling(mask: Image, darkness: Image, edge: Image | None, photographed: bool) -> tuple[bool, int]:

@@ -24,23 +24,23 @@ FINGER = 0.015  # of the picture's size, to either side: what lies on the paper 
 TINGE = 0.75  # of the paper's whiteness: what is more coloured is not paper in a shadow
 EDGES = 9  # [pixels]: edges of shadows are narrower
 INKED = 99.5  # percent of a sheet that is certainly not ink
-HALF = 0.5  # of the ink's contrast: what has more is a line,
-LINE = 0.2  # of the light: which takes as much away at least
+HALF = 0.5  # of the ink's contrast: what has more is a line
+LINE = 0.2  # of the light: what takes less away is no line
 ACROSS = 3  # [pixels]: a line that runs so far to either side of an edge crosses it
 NOTABLE = 0.03  # of the picture: smaller regions are no part of the sheet that matters
-STEP = 0.04  # of the light that changes at least at the edge of a sheet,
-ROUGH = 4.0  # times what changes everywhere
+STEP = 0.04  # of the light: how much of it changes at the edge of a sheet, at least
+ROUGH = 4.0  # times what changes everywhere: likewise
 LEAST_SHEET = 0.1  # of the picture, that holds what is to be seen
 BULKY = 0.85  # of its convex hull that a sheet covers, though fingers hold it
 FOUR_SIDED = 0.95  # of its convex hull, and of the quadrilateral around it, that a sheet covers
 SIDES = 3  # of a sheet that are seen, to tell it from a part of a sheet in a shadow
 BEYOND = 4  # [pixels] from its edge that a table's light is taken
-SAME = 4  # of 255: colours of a canvas differ by no more,
-INKY = 0.3  # of the most that any differ: those of ink differ by more
+SAME = 4  # of 255: a canvas's colours differ by no more from the commonest
+INKY = 0.3  # of the most that any colour differs from a canvas's: those of ink differ by more
 TOOLS = 0.03  # of a picture that an app's tools take at least
 WHOLLY = 0.985  # of its bounding rectangle that a canvas fills
-REGIONS = 6  # that are looked at, the largest,
-PARTS = 4  # so many of them at once
+REGIONS = 6  # that may be the sheet, the largest
+PARTS = 4  # of these regions, at most, that together are the sheet
 
 
 def find_sheet(colours: Image) -> tuple[Image | None, NDArray[Any]]:
