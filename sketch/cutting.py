@@ -14,14 +14,14 @@ from sketch.kernel import cuts
 from sketch.marks import read_arrows, read_cross
 from sketch.outlines import read_outline
 from sketch.pieces import Page, Piece
+from sketch.proposals import APART
 from sketch.typing import Array
 
 __all__ = ["things_in"]
 
-WAY = 2  # the kind of part, as ink_cut numbers them, that leads from one thing to the next
+BETWEEN = 2  # the kind of part that leads from one thing to the next, as in core/cut.c
 CUT = 10.0  # nats for each part beyond the first: going on to the next thing is rarer than lifting the pen
-LEAST = (20.0, 40.0)  # nats of the cheapest loop, and of the cheapest line, by the numbers of ink_cut
-OPEN = 0.2  # of its length: a stroke whose ends are further apart is no outline
+LEAST = (20.0, 40.0)  # nats of the cheapest loop, and of the cheapest line, as core/cut.c numbers them
 
 
 def things_in(points: Array) -> list[Array]:
@@ -38,8 +38,8 @@ def things_in(points: Array) -> list[Array]:
         return [points]
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     at = np.searchsorted(along, np.array(shares) * along[-1])
-    parts = [points[a : b + 1] for a, b, kind in zip(at, at[1:], kinds, strict=False) if kind != WAY]
-    least = [LEAST[kind] for kind in kinds if kind != WAY]
+    parts = [points[a : b + 1] for a, b, kind in zip(at, at[1:], kinds, strict=False) if kind != BETWEEN]
+    least = [LEAST[kind] for kind in kinds if kind != BETWEEN]
     page = Page()
     page.add([points, *parts])
     page.settle()
@@ -67,7 +67,7 @@ def things_in(points: Array) -> list[Array]:
 def _meant(page: Page, p: Piece) -> Iterator[float]:
     """The nats to say a piece by itself as each thing that has a meaning."""
     found = [read_bar(p)]
-    if p.gap < OPEN * p.length:
+    if p.gap < APART * p.length:
         found += read_outline(page, [(p.index, False)])
     yield from (f.cost for f in found if f is not None)
     found = [read_cross(page, (p.index,))]

@@ -32,10 +32,15 @@ from sketch.typing import Array, Box
 __all__ = ["HOPELESS", "Pick", "Proposals", "Proposed", "Row", "proposing"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
-CLOSED = 0.04  # of its ink, what is missing at most of an outline that needs no other ink
+APART = 0.2  # of its length: a stroke whose ends are further apart is no outline by itself
+COMPLETE = 0.1  # of its ink: what is missing, at most, of an outline that needs no other ink
+CLOSED = 0.04  # of its ink: what is missing, at most, of an outline that is complete if it is not narrow
+NARROW = 0.2  # of its extent: the shorter half axis of an outline that is narrow
+WELL_SAID = 0.6  # of the nats of its free ink: an outline that is said in less is complete, though narrow
 MEANT = 4.0  # nats that a reading is to save: less would be luck, as so many are tried
 THINNEST = 1.001 * LEAST_AXIS  # of the page: outlines that are no wider were judged as wider than they are
 LITTLE = 0.2  # of an outline's scale: pieces whose distance from it is compared with their own
+ALONG = 0.3  # of an outline's scale: as near to it is what may be drawn along it once more
 HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less than that for it
 
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
@@ -208,12 +213,12 @@ class Proposals:
     # ------------------------------------------------------------ readings
 
     def _read_alone(self, p: Piece) -> Alone:
-        if p.gap >= 0.2 * p.length:
+        if p.gap >= APART * p.length:
             return Alone([], False, False)
         outlines = read_outline(self.page, [(p.index, False)])
         best = min(outlines, key=lambda f: f.cost)
-        loop = best.gap < CLOSED and best.narrow > 0.2 * p.extent
-        complete = best.gap < 0.1 and (loop or best.cost < 0.6 * p.unread)
+        loop = best.gap < CLOSED and best.narrow > NARROW * p.extent
+        complete = best.gap < COMPLETE and (loop or best.cost < WELL_SAID * p.unread)
         return Alone(outlines, complete, complete and best.cost < PLAIN * p.unread)
 
     def _propose(self, p: Piece, known: Fits) -> Proposed:
@@ -322,7 +327,7 @@ def _again(page: Page, found: list[Fitted], free: dict[int, float]) -> list[Fitt
         return []
     near = [
         p
-        for p in page.along(best.outline, 0.3 * best.scale)
+        for p in page.along(best.outline, ALONG * best.scale)
         if p.index not in best.pieces and page.apart(p.index, best.pieces)
     ]
     said = gone_over(page, best, near) if near else []

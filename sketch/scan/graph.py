@@ -20,6 +20,14 @@ OVERSHOOT = 2.5  # pen widths that a line may go on past its corner
 DOUBLE = 1.3  # pen widths: wider ink is that of two lines
 MERGED = 10.0  # pen widths that two lines from one tip may be one
 STRAIGHT_ON = 0.8  # cosine of the angle between a tip and the lines that go on from it
+TWIG = 1.5  # radii of a node's ink: an end that reaches less far beyond it is thinning's
+PINHOLE = 4.0  # radii of a node's ink: a shorter ring at it is around a hole of a pixel or two
+LEAST_SINE = 0.2  # of the angle at which two lines meet in a corner
+
+# Times that the lines of a corner are at least as long as what sticks out of it. One tip at a fork is a corner's; two
+# short arms may be a small cross's, whose others are not much longer, nor is the line that joins these, if any.
+LONGER_THAN_TIP, LONGER_THAN_ARMS, LONGER_THAN_LOOP = 1.2, 3.0, 6.0
+
 Ink = dict[int, Points]  # stretches of the skeleton by name, each shape (n, 2) [pixels]
 End = tuple[int, int]  # an edge and which of its ends
 
@@ -112,10 +120,10 @@ def _drop_twigs(graph: Graph) -> None:
     for edge in graph.edges:
         a, b = edge.ends
         if (a >= 0) != (b >= 0):
-            reach = 1.5 * graph.radius[max(a, b)] + 1
+            reach = TWIG * graph.radius[max(a, b)] + 1
             if edge.length < reach:
                 continue
-        elif a == b and a >= 0 and edge.length < 4 * graph.radius[a]:
+        elif a == b and a >= 0 and edge.length < PINHOLE * graph.radius[a]:
             continue
         kept.append(edge)
     graph.edges = kept
@@ -140,9 +148,8 @@ def _drop_overshoots(graph: Graph, pen: float) -> None:
         if not short or len(rest) != 2:
             continue
         longest = max(graph.edges[e].length for e in short)
-        # one tip at a fork is a corner's; two short arms may be a small cross's, whose others are not much longer, nor
-        # is the line that joins these, if any
-        far = 1.2 if len(short) == 1 else 3.0 if rest[0][0] != rest[1][0] else 6.0
+        apart = rest[0][0] != rest[1][0]
+        far = LONGER_THAN_TIP if len(short) == 1 else LONGER_THAN_ARMS if apart else LONGER_THAN_LOOP
         if min(graph.edges[e].length for e, _ in rest) > far * longest:
             corner = _corner(graph, node, rest, pen)
             if corner is not None:
@@ -192,7 +199,7 @@ def _corner(graph: Graph, node: int, sides: list[End], pen: float) -> Points | N
     centre, reach = graph.nodes[node], graph.radius[node] + 1
     (p, u), (q, v) = (heading(graph.outward(end), centre, reach, SIGHT * pen) for end in sides)
     sine = u[0] * v[1] - u[1] * v[0]
-    if abs(sine) < 0.2:
+    if abs(sine) < LEAST_SINE:
         return None
     along = ((q[0] - p[0]) * v[1] - (q[1] - p[1]) * v[0]) / sine
     corner = p + along * u

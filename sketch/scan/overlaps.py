@@ -24,6 +24,7 @@ from sketch.typing import Points
 __all__ = ["overlapping"]
 
 SOLID = 0.9  # of its hull's area: what a convex outline drawn by hand has at least
+WITHOUT_SMALL = 0.8  # of that: what it has at least without the small faces in it
 MOST_FACES = 24  # that hang together: more are a grid, or shading
 MOST_UNIONS = 100  # that are looked at, from each face
 MOST_BODIES = 60  # of those that are convex, the likeliest
@@ -117,7 +118,7 @@ def _unions(sheet: Sheet, knot: _Knot) -> list[_Body]:
             continue  # what is under a pivot alone is no body
         hull = cv2.convexHull(np.concatenate([hulls[f] for f in some]))
         whole = cv2.contourArea(hull)
-        if sum(sheet.faces[f].area for f in some) < 0.8 * SOLID * whole:
+        if sum(sheet.faces[f].area for f in some) < WITHOUT_SMALL * SOLID * whole:
             continue
         within = [f for f, at in small if cv2.pointPolygonTest(hull, (at[0], at[1]), measureDist=False) >= 0]
         solid = sum(sheet.faces[f].area for f in [*some, *within]) / whole

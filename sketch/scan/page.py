@@ -37,11 +37,13 @@ HOLE = 0.012  # of the picture's size: a hole punched into the sheet has more fr
 NOISELESS = 1.0  # of 255: what is seen by a camera has more noise
 SEEN = 1.5  # of 255: what is seen by a camera counts as so noisy at least, though it was smoothed
 GRAINY = 5.0  # of 255: paper noisier than this is made smoother before its ink is looked at
+USUAL = 0.6  # of the bare paper's pixels: those that are no darker than twice its noise
 LEAST_CONTRAST = 16  # of 255: paper's own texture stays below
 STAIN = 0.006  # of the picture's size, to either side: what is wider is a stain or filled
 EDGE = 3.0  # [pixels] to either side: ink ends within
 SOFT = 0.5  # of a stain's darkness: less than this changes there
 SPECK = 3.5  # pen widths: what is smaller from corner to corner of its box is nothing drawn
+CRISP = 0.75  # of the ink's darkness: what has more is ink, whatever is around it
 FAINT = 0.3  # of the ink's darkness: what is fainter is ruling, the other side of the sheet, or dirt
 CREST = 1.2  # of a line's darkness: what is next to it may be as dark
 LEAST_LINK = 3.0  # [pixels]: what is shorter and leads nowhere is a bump of an edge
@@ -208,7 +210,7 @@ def _noise(darkness: Image, paper: Image | None, step: int) -> float:
     histogram = np.asarray(cv2.calcHist([some], [0], mask, [256], [0, 256])).ravel()
     # light is the brightest around, so that bare paper is darker by as much as it is uneven
     share = np.cumsum(histogram)
-    return max(float(np.searchsorted(share, 0.6 * share[-1])) / 2, NOISELESS)
+    return max(float(np.searchsorted(share, USUAL * share[-1])) / 2, NOISELESS)
 
 
 def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
@@ -237,7 +239,7 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     if not len(notable):
         return np.zeros_like(mask), []
     full = found.strength[notable].max()
-    mask |= (crisp > np.uint8(max(floor, 0.75 * full))).view(np.uint8)
+    mask |= (crisp > np.uint8(max(floor, CRISP * full))).view(np.uint8)
     # beside darker ink a thin line is less than half as dark as the darkest around, as the blurred edge of that ink
     # is; but from a line darkness falls to both sides, and along an edge to one
     link(crests(dark, mask, max(floor, FAINT * full), reach, CREST, BESIDE), LEAST_LINK, mask)

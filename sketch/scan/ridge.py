@@ -14,6 +14,7 @@ __all__ = ["centre_on_ink"]
 
 FARTHEST = 1.0  # [pixels] that a point is moved: thinning is off by no more along a clean line
 STEP = 0.5  # [pixels] between the samples across a line
+PALE = 0.4  # of the darkness of a line's middle: what has less is its rim, or other ink beside it
 
 
 def centre_on_ink(graph: Graph, darkness: NDArray[Any], pen: float) -> None:
@@ -32,8 +33,7 @@ def centre_on_ink(graph: Graph, darkness: NDArray[Any], pen: float) -> None:
     at = points[:, None, :] + normals[:, None, :] * offsets[None, :, None]
     x, y = at[..., 0].astype(np.float32), at[..., 1].astype(np.float32)
     ink = _sample(cv2.GaussianBlur(darkness, (3, 3), 0), x, y)
-    # what is paler than half of the line's middle is its rim, or other ink beside it
-    ink = np.maximum(ink - 0.4 * ink.max(axis=1, keepdims=True), 0.0)
+    ink = np.maximum(ink - PALE * ink.max(axis=1, keepdims=True), 0.0)
     total = ink.sum(axis=1)
     shift = np.divide(ink @ offsets, total, out=np.zeros(len(points)), where=total > 0)
     points += normals * np.clip(shift, -FARTHEST, FARTHEST)[:, None]

@@ -30,6 +30,7 @@ APART = 0.5  # pen widths: rings whose belts are nearer to each other have ink i
 WITHIN = 0.2  # of roundness: what is less round by more than a ring around it, and has some ink of that, is half of it
 CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to be chance
 ALL_ROUND = 0.7  # of its length: an edge that has so much of the ring is the ring
+BLOT = 0.75  # pen widths from the paper: ink that is further from it is a hole that closed, and no line
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
 
@@ -85,8 +86,7 @@ def _seeds(
     for i, j in _beside(np.array([way[0, 0] for way, _ in small]).reshape(-1, 2), 2 * LARGEST * pen):
         (x, y), radius = cv2.minEnclosingCircle(np.concatenate([small[i][0], small[j][0]]))
         seeds.append((x, y, radius + pen / 2 - 1))
-    # ink much wider than a line is a hole that closed, wholly or in part
-    inside = _grown((distance > 0.75 * pen).view(np.uint8), pen / 4)
+    inside = _grown((distance > BLOT * pen).view(np.uint8), pen / 4)
     cv2.drawContours(inside, [way for way, _ in small], -1, 1, cv2.FILLED)
     for way in cv2.findContours(inside, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]:
         box = cv2.boundingRect(way)

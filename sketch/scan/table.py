@@ -33,8 +33,11 @@ ROUGH = 4.0  # times what changes everywhere: likewise
 LEAST_SHEET = 0.1  # of the picture, that holds what is to be seen
 BULKY = 0.85  # of its convex hull that a sheet covers, though fingers hold it
 FOUR_SIDED = 0.95  # of its convex hull, and of the quadrilateral around it, that a sheet covers
+FOUR = 0.02  # of its convex hull's way around: how far a sheet's outline is off a quadrilateral
 SIDES = 3  # of a sheet that are seen, to tell it from a part of a sheet in a shadow
 BEYOND = 4  # [pixels] from its edge that a table's light is taken
+NEARLY_ALL = 0.9  # of its edge: where a sheet that stands out is brighter than what is beside it
+SPREAD = 0.12  # of the picture's size: standard deviation of what light is continued by
 SAME = 4  # of 255: a canvas's colours differ by no more from the commonest
 INKY = 0.3  # of the most that any colour differs from a canvas's: those of ink differ by more
 TOOLS = 0.03  # of a picture that an app's tools take at least
@@ -211,7 +214,7 @@ def _is_four_sided(way: NDArray[Any]) -> bool:
 
     hull = cv2.convexHull(way)
     area = cv2.contourArea(hull)
-    corners = cv2.approxPolyDP(hull, 0.02 * cv2.arcLength(hull, True), True)
+    corners = cv2.approxPolyDP(hull, FOUR * cv2.arcLength(hull, True), True)
     return (
         cv2.contourArea(way) > FOUR_SIDED * area
         and len(corners) == 4
@@ -229,7 +232,7 @@ def _stands_out(sheet: Image, light: Image) -> bool:
     # the brightest within reach is the sheet's light
     within = cv2.dilate(inner * sheet, np.ones((4 * BEYOND + 1,) * 2, np.uint8))
     darker = light[rim] < (1 - STEP / 2) * within[rim]
-    return bool(darker.size and darker.mean() > 0.9)
+    return bool(darker.size and darker.mean() > NEARLY_ALL)
 
 
 def _is_crossed(sheet: Image, colours: Image) -> bool:
@@ -296,7 +299,7 @@ def _continued(values: NDArray[Any], weight: NDArray[np.float32]) -> NDArray[Any
     height, width = values.shape
     size = (max(width // COARSER, 1), max(height // COARSER, 1))
     total, known = (cv2.resize(v, size, interpolation=cv2.INTER_AREA) for v in (weight * values, weight))
-    spread = 0.12 * (size[0] * size[1]) ** 0.5
+    spread = SPREAD * (size[0] * size[1]) ** 0.5
     everywhere = float(total.sum()) / max(float(known.sum()), 1e-9)  # it is this far from all that has weight
     total, known = cv2.GaussianBlur(total, (0, 0), spread), cv2.GaussianBlur(known, (0, 0), spread)
     smooth = (total + 1e-3 * everywhere) / (known + 1e-3)
