@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import functools
 import math
 import struct
 import sys
@@ -73,7 +74,9 @@ class _Profile(ctypes.Structure):
     _fields_ = [(name, ctypes.c_double) for name in _PROFILE]
 
 
-def _load() -> ctypes.CDLL:
+@functools.cache
+def load_core() -> ctypes.CDLL:
+    """The engine's library, loaded once; raises ImportError where there is none, or one of another version."""
     suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
     path = Path(__file__).with_name("_core" + suffix)
     try:
@@ -96,9 +99,6 @@ def _load() -> ctypes.CDLL:
     return core
 
 
-_core: ctypes.CDLL | None = None
-
-
 def simulate(
     scene: Scene,
     duration: float = 10.0,
@@ -119,7 +119,6 @@ def simulate(
         InputError: for a scene that fails its checks, or an argument out of range.
         RuntimeError: when the run fails (numbers beyond the range of doubles, no memory).
     """
-    global _core
     if not isinstance(scene, Scene):
         raise TypeError(
             f"a Scene is run, not a {type(scene).__name__}; Scene.load and Scene.from_dict make one"
@@ -136,9 +135,7 @@ def simulate(
         return run_pymunk(scene, duration, fps)
     if engine != "impulse":
         raise InputError("engine", f"{engine!r} is neither 'impulse' nor 'pymunk'")
-    if _core is None:
-        _core = _load()
-    return _run(_core, scene, samples, fps, tolerance)
+    return _run(load_core(), scene, samples, fps, tolerance)
 
 
 def _sample_count(duration: float, fps: float, bodies: int) -> int:

@@ -42,14 +42,14 @@ def run_pymunk(
 
 def convex_pieces(vertices: list[Vector]) -> list[list[Vector]]:
     """Cut a simple polygon, either way round, into convex pieces, each counter-clockwise."""
-    from sim.engine import _load
+    from sim.engine import load_core
 
     area = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(vertices, [*vertices[1:], vertices[0]], strict=True))
     ordered = list(vertices) if area > 0 else list(reversed(vertices))
     n = len(ordered)
     flat = (ctypes.c_double * (2 * n))(*(c for v in ordered for c in v))
     start, index = (ctypes.c_int32 * (n + 1))(), (ctypes.c_int32 * (3 * n))()
-    count = _load().sim_decompose(flat, n, start, index)
+    count = load_core().sim_decompose(flat, n, start, index)
     if count < 0:
         raise MemoryError
     return [[ordered[i] for i in index[start[k] : start[k + 1]]] for k in range(count)]

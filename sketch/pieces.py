@@ -9,13 +9,12 @@ from functools import cached_property
 
 import numpy as np
 
-from sketch.ink import Sketch
 from sketch.kernel import along, heads, joined, measure, reaching, touching
 from sketch.loose import Chain, End, LooseEnds
 from sketch.scoring import unread
 from sketch.typing import Array, Point
 
-__all__ = ["Looked", "Page", "Piece", "page_of"]
+__all__ = ["Looked", "Page", "Piece"]
 
 SPECK = 1 / 8  # of the canvas: what is drawn on less of it is small, not a page of its own
 DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
@@ -224,14 +223,6 @@ class Page:
         found, asked = self.ends.open_ways(start)
         self.looked.ends |= asked
         return found
-
-
-def page_of(sketch: Sketch) -> Page:
-    """All strokes of a sketch, measured, none of them loose yet."""
-    page = Page(math.hypot(sketch.width or 0.0, sketch.height or 0.0))
-    page.add([s.points for s in sketch.strokes])
-    page.settle()
-    return page
 
 
 def _among(points: Array, given: Array) -> Array:

@@ -20,10 +20,10 @@ from sketch.scan.graph import RING, SIGHT, Edge, Graph
 from sketch.scan.outlines import SMOOTH, ends_cost
 from sketch.typing import Points
 
-__all__ = ["GAP", "Face", "Outline", "Sheet", "bridged"]
+__all__ = ["Face", "Outline", "Sheet", "bridged"]
 
 SLIVER = 1.2  # pen widths: the mean width of a face between two lines that are drawn along each other
-GAP = 3.0  # pen widths: of an outline's gap that is closed
+GAP = 3.0  # pen widths: how far before other ink a line may end that was drawn up to it
 AHEAD = 0.5  # cosine of the angle to where the line was going in which that is looked for
 ROOM = 10.0  # of a ring's area: what bodies that it joins may have in common
 SHORT = 2.5  # pen widths: a shorter edge is no line that must be explained

@@ -12,13 +12,13 @@ import numpy as np
 from sketch.scan.courses import Course, Links
 from sketch.scan.graph import RING, End, Graph
 from sketch.scan.junctions import LONELY, Branch, Junction, Pairs, turn_cost
-from sketch.scan.sheet import GAP
 from sketch.typing import Points
 
 __all__ = ["CRUMB", "Layout"]
 
 SHARED_SIDE = 0.45  # an outline may borrow this share of its length from ink that it rests on
 CRUMB = 2.0  # pen widths: a piece shorter than this that starts at other ink is part of that
+GAP = 3.0  # pen widths: hardly a gap between the ends of an outline, whatever is there
 ACROSS = 8.0  # radii of a ring: what it is a pivot of is no wider there, or is not told by it
 BETWEEN = 0.3  # of the way from one line to the other: a ring so near to its middle is between them
 OWN_INK = 0.5  # and the lender has at least this much other ink, as a share of what it lends

@@ -21,7 +21,7 @@ from sketch.scan.strokes import Layout
 from sketch.scan.unlifted import unlifted
 from sketch.typing import Points
 
-__all__ = ["SIDE", "Way", "Ways", "trace_strokes"]
+__all__ = ["SIDE", "Way", "Ways"]
 
 DOUBT = 3.0  # [rad²] that pairings may be worse in all than the best ones, and still be looked at
 SIDE = 3.0  # pen widths: the shortest side that is borrowed from other ink
@@ -153,8 +153,3 @@ def _combined(choices: list[Choice]) -> list[tuple[Choice, ...]]:
         if sum(c.extra for c in some) < DOUBT and len({id(c.junction) for c in some}) == size
     ]
     return sorted(sets, key=lambda some: sum(c.extra for c in some))[:MOST]
-
-
-def trace_strokes(graph: Graph, pen: float) -> list[Points]:
-    """The likeliest strokes of a graph [pixels], each shape (n, 2). pen: the width of the pen [pixels]."""
-    return [way.points for way in Ways(graph, pen).likeliest()]

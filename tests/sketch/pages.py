@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch import Recognition, Sketch, Stroke, recognize
+from sketch.pieces import Page
 from sketch.synthetic import HANDS, Hand, arrow, circle, cross, outline
 
 Array = NDArray[np.float64]
@@ -49,6 +50,14 @@ def page(*shapes: list[Array], **keys: float) -> Sketch:
         [Stroke(points) for shape in shapes for points in shape],
         **({"width": 1280.0, "height": 720.0} | keys),
     )
+
+
+def measured(sketch: Sketch) -> Page:
+    """The ink of a sketch as the recognizer sees it, none of its strokes loose."""
+    ink = Page(math.hypot(sketch.width or 0.0, sketch.height or 0.0))
+    ink.add([s.points for s in sketch.strokes])
+    ink.settle()
+    return ink
 
 
 def read(*shapes: list[Array]) -> Recognition:

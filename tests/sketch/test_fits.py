@@ -6,10 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from pages import box, ngon, page, read
+from pages import box, measured, ngon, page, read
 
 from sketch.kernel import depth, fit_closed, measure
-from sketch.pieces import page_of
 from sketch.synthetic import HANDS, outline
 
 
@@ -75,7 +74,7 @@ def test_hooks_are_cut_and_short_sides_are_not() -> None:
         [[4, 9], [0, 0], *[[k, 0] for k in range(10, 210, 10)], [200, 80], [0, 80], [0, 6]], float
     )
     end = np.array([[0, 0], [900, 0], [900, 30], [0, 30], [0, 2]], float)
-    cut, kept = page_of(page([hooked, end])).pieces.values()
+    cut, kept = measured(page([hooked, end])).pieces.values()
     assert cut.points[0].tolist() == [0, 0]
     assert len(kept.points) == 5
 
@@ -86,7 +85,7 @@ def test_ink_without_length_is_no_piece(points: list[list[float]]) -> None:
     line = np.array([[0.0, 0.0], [50.0, 1.0]])
     strokes = measure([dot, line, dot])
     assert strokes.measure[:, 0].tolist() == [0, pytest.approx(50.01, abs=0.01), 0]
-    pieces = list(page_of(page([dot, line, dot])).pieces.values())
+    pieces = list(measured(page([dot, line, dot])).pieces.values())
     assert [p.stroke for p in pieces] == [1]
 
 

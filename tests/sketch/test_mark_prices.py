@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from pages import measured
 
 from sketch.bars import STRAIGHT, read_bar_of_two
 from sketch.ink import Sketch, Stroke
 from sketch.marks import read_cross
-from sketch.pieces import Page, page_of
+from sketch.pieces import Page
 from sketch.scoring import meaningless, misfit
 
 Point = tuple[float, float]
@@ -18,7 +19,7 @@ Point = tuple[float, float]
 
 def page_with(*bars: tuple[Point, Point]) -> Page:
     """Straight strokes from point to point."""
-    return page_of(Sketch([Stroke(np.linspace(a, b, 60)) for a, b in bars], width=1280, height=720))
+    return measured(Sketch([Stroke(np.linspace(a, b, 60)) for a, b in bars], width=1280, height=720))
 
 
 def cross_of(share: float, ratio: float) -> float:
@@ -70,7 +71,7 @@ def test_ink_that_an_x_does_not_need_leaves_it_rough(way: tuple[Point, Point]) -
     longer = [np.linspace(a, b, 60) for a, b in bars]
     k = 0 if way[0][0] == 400 else 1
     longer[k] = np.concatenate([longer[k] if k == 0 else longer[k][::-1], np.linspace(*way, 40)[1:]])
-    page = page_of(Sketch([Stroke(p) for p in longer], width=1280, height=720))
+    page = measured(Sketch([Stroke(p) for p in longer], width=1280, height=720))
     found = read_cross(page, (0, 1))
     assert plain is not None
     assert found is not None

@@ -8,11 +8,10 @@ import math
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from pages import page
+from pages import measured, page
 
 from sketch.kernel import along, beside, course_around, fit_closed, lent, measure, off_outline
 from sketch.loose import LooseEnds
-from sketch.pieces import page_of
 
 Array = NDArray[np.float64]
 
@@ -96,7 +95,7 @@ def test_who_looked_at_an_end_hears_of_new_neighbours() -> None:
 
 
 def test_heads_are_the_nearest_small_strokes() -> None:
-    ink = page_of(page(scattered(1, 60)))
+    ink = measured(page(scattered(1, 60)))
     shaft = ink.pieces[0]
     for limits in ((40.0, 120.0, 90.0), (80.0, 200.0, 200.0)):
         reach, span, size = limits
@@ -108,7 +107,7 @@ def test_heads_are_the_nearest_small_strokes() -> None:
 
 def test_ink_along_an_outline_and_its_distance() -> None:
     strokes = scattered(2, 80)
-    ink = page_of(page(strokes))
+    ink = measured(page(strokes))
     t = np.linspace(0, 2 * math.pi, 24, endpoint=False)
     ring = np.stack([150 + 140 * np.cos(t), 150 + 140 * np.sin(t)], axis=1)
     near = {p.index for p in ink.along(ring, 30.0)}
@@ -129,7 +128,7 @@ def test_ink_along_an_outline_and_its_distance() -> None:
 
 
 def test_pieces_near_a_place_are_those_whose_boxes_are() -> None:
-    ink = page_of(page(scattered(4, 60)))
+    ink = measured(page(scattered(4, 60)))
     ink.remove(7)
     some, both = set(), set()
     for p in ink.pieces.values():

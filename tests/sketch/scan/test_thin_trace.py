@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sketch.scan.binding import belt, crests, distances, pieces, thin, trace
 from sketch.scan.corners import sharpen_corners
 from sketch.scan.graph import build_graph
-from sketch.scan.ways import trace_strokes
+from sketch.scan.ways import Ways
 
 PEN = 5
 
@@ -31,7 +31,7 @@ def strokes_of(mask: np.ndarray) -> list[np.ndarray]:
     distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
     graph = build_graph(trace(skeleton, count), distance, PEN)
     sharpen_corners(graph, distance, PEN)
-    return trace_strokes(graph, PEN)
+    return [way.points for way in Ways(graph, PEN).likeliest()]
 
 
 def is_closed(points: np.ndarray) -> bool:
