@@ -18,7 +18,7 @@ from cli.progress import error
 
 __all__ = ["main"]
 
-DONE, FAILED, USAGE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 3, 130
+FAILED, USAGE, BAD_INPUT, INTERRUPTED = 1, 2, 3, 130  # exit statuses; 0 is done
 
 COMMANDS = {
     "simulate": "run a drawing or a scene",

@@ -27,7 +27,6 @@ __all__ = [
     "check_samples",
     "configure",
     "motion_of",
-    "run_of",
     "until_rest",
 ]
 
@@ -151,7 +150,7 @@ def _simulate(source: str, targets: list[str], options: argparse.Namespace) -> N
 
     tell = (lambda _: None) if options.quiet else note
     with naming(source, len(options.inputs) > 1), Progress(not options.quiet) as progress:
-        result = run_of(source, options, tell, progress)
+        result = _run_of(source, options, tell, progress)
         if options.verbose:
             _tell_profile(result, note)
         began = time.perf_counter()
@@ -169,7 +168,7 @@ def _simulate(source: str, targets: list[str], options: argparse.Namespace) -> N
             _tell_what_left(result.lost(), tell)
 
 
-def run_of(
+def _run_of(
     source: str, options: argparse.Namespace, tell: Callable[[str], object], progress: Progress
 ) -> Run:
     """Read an input and simulate it; `tell` is given the notes."""

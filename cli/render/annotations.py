@@ -15,7 +15,7 @@ from cli.render.pen import Pen
 from cli.render.style import mix
 from sim.scene import Scene
 
-__all__ = ["ScaleBar", "annotate", "length_label", "round_length", "scale_bar"]
+__all__ = ["ScaleBar", "annotate", "round_length", "scale_bar"]
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class ScaleBar:
 
     @property
     def label(self) -> str:
-        return length_label(self.metres)
+        return _length_label(self.metres)
 
 
 def scale_bar(scene: Scene, camera: Camera, pen: Pen, ink: Sequence[Array] = ()) -> ScaleBar:
@@ -114,7 +114,7 @@ def round_length(metres: float) -> float:
     return next(n * power for n in (5, 2, 1) if n * power <= metres * (1 + 1e-9))
 
 
-def length_label(metres: float) -> str:
+def _length_label(metres: float) -> str:
     for unit, size in (("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)):
         if metres >= size * (1 - 1e-9):
             return f"{metres / size:g} {unit}"

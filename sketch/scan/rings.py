@@ -128,11 +128,7 @@ def take_rings(
     tangles as it was with the rings in it, or None without any, and the rings taken.
     """
     whole = list(graph.edges)
-    for edge in whole:
-        if not edge.ink:
-            edge.ink = {next(names): edge.points}
-    parts = {k: edge.ink for k, edge in enumerate(whole)}
-    origin = {name: k for k, ink in parts.items() for name in ink}
+    stretches = _Stretches(whole, names)
     nodes, radius = graph.nodes, graph.radius
     taken = []
     places = _Places(graph.edges)
@@ -150,16 +146,18 @@ def take_rings(
         only = within[crossing[0]]
         if len(crossing) == 1 and only.mean() > 0.5 and np.count_nonzero(only) > ALL_ROUND * around:
             continue  # it stands by itself
-        ink = _take(graph, middle, reach, pen, names, parts, origin, places)
+        ink = _take(graph, middle, reach, pen, stretches, places)
         hidden = round(around) - sum(map(len, ink.values()))
         if hidden > 0:  # thinning leaves less of a blot than was drawn
             ink[next(names)] = ring.points[np.arange(hidden) % len(ring.points)]
         taken.append(replace(ring, ink=ink))
     if not taken:
         return None, []
-    near = _reached(whole, [edge.ink.keys() != parts[k].keys() for k, edge in enumerate(whole)])
-    for k, edge in enumerate(whole):
-        edge.ink = parts[k]
+    near = _reached(
+        whole, [edge.ink.keys() != its.keys() for edge, its in zip(whole, stretches.of, strict=True)]
+    )
+    for edge, its in zip(whole, stretches.of, strict=True):
+        edge.ink = its
     return Graph(nodes, radius, [edge for edge, there in zip(whole, near, strict=True) if there]), taken
 
 
@@ -212,20 +210,9 @@ def _reached(edges: list[Edge], touched: list[bool]) -> list[bool]:
 
 
 def _take(
-    graph: Graph,
-    middle: Points,
-    reach: float,
-    pen: float,
-    names: Iterator[int],
-    parts: dict[int, Ink],
-    origin: dict[int, int],
-    places: _Places,
+    graph: Graph, middle: Points, reach: float, pen: float, stretches: _Stretches, places: _Places
 ) -> Ink:
-    """Cut a ring out of the graph, in place; returns its ink.
-
-    names: for stretches of ink that are new by being cut.  parts: of each whole edge, the stretches.  origin: of each
-    stretch, the whole edge.  places: of the graph's edges.
-    """
+    """Cut a ring out of the graph, in place; returns its ink. places: of the graph's edges."""
     inside = np.hypot(*(graph.nodes - middle).T) < reach
     touched = places.touched(middle, reach, inside)
     node = len(graph.nodes)
@@ -234,33 +221,14 @@ def _take(
     ink: Ink = {}
     pieces: list[list[Edge]] = []
     for edge in map(graph.edges.__getitem__, touched):
-        head, tail = (node if end >= 0 and inside[end] else end for end in edge.ends)
         outside = np.hypot(*(edge.points - middle).T) >= reach
+        head, tail = (node if end >= 0 and inside[end] else end for end in edge.ends)
         if outside.all() and (head, tail) == edge.ends:
             pieces.append([edge])
-            continue
-        (name,) = edge.ink
-        whole = origin[name]
-        parts[whole] = stretches = {n: size for n, size in parts[whole].items() if n != name}
-        steps = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(int), [0]])))
-        if not outside.all():
-            name = next(names)
-            origin[name] = whole
-            stretches[name] = ink[name] = edge.points[~outside]
-        cut = []
-        for a, b in steps.reshape(-1, 2):
-            ends = (head if a == 0 else node, tail if b == len(outside) else node)
-            piece = Edge(edge.points[a:b], ends)
-            name = next(names)
-            origin[name] = whole
-            stretches[name] = piece.points
-            # a stub that ends freely beside the belt is the belt's own
-            if b - a > 1 and (node not in ends or min(ends) >= 0 or piece.length > pen):
-                piece.ink = {name: piece.points}
-                cut.append(piece)
-            else:
-                ink[name] = piece.points
-        pieces.append(cut)
+        else:
+            left, its = _cut(edge, outside, (head, tail), node, pen, stretches)
+            pieces.append(left)
+            ink |= its
     places.replace(touched, pieces)
     edges, passed = list[Edge](), 0
     for k, cut in zip(touched, pieces, strict=True):
@@ -268,3 +236,64 @@ def _take(
         passed = k + 1
     graph.edges = edges + graph.edges[passed:]
     return ink
+
+
+def _cut(
+    edge: Edge,
+    outside: NDArray[np.bool_],
+    ends: tuple[int, int],
+    node: int,
+    pen: float,
+    stretches: _Stretches,
+) -> tuple[list[Edge], Ink]:
+    """What is left of an edge outside a ring, and the ring's ink that was the edge's.
+
+    outside: which of its points are.  ends: of the whole edge, now.  node: the ring's.
+    """
+    (name,) = edge.ink
+    whole = stretches.drop(name)
+    left, ink = list[Edge](), Ink()
+    if not outside.all():
+        within = edge.points[~outside]
+        ink[stretches.add(whole, within)] = within
+    steps = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(int), [0]])))
+    for a, b in steps.reshape(-1, 2):
+        piece = Edge(edge.points[a:b], (ends[0] if a == 0 else node, ends[1] if b == len(outside) else node))
+        name = stretches.add(whole, piece.points)
+        # a stub that ends freely beside the belt is the belt's own
+        if b - a > 1 and (node not in piece.ends or min(piece.ends) >= 0 or piece.length > pen):
+            piece.ink = {name: piece.points}
+            left.append(piece)
+        else:
+            ink[name] = piece.points
+    return left, ink
+
+
+class _Stretches:
+    """The stretches of ink that whole edges are cut into, ring by ring.
+
+    Attributes:
+        of: each whole edge's, by name.
+    """
+
+    def __init__(self, edges: list[Edge], names: Iterator[int]) -> None:
+        """edges: they get names for their ink, where they have none.  names: those that are left."""
+        for edge in edges:
+            if not edge.ink:
+                edge.ink = {next(names): edge.points}
+        self.of = [edge.ink for edge in edges]
+        self._names = names
+        self._edge = {name: k for k, ink in enumerate(self.of) for name in ink}
+
+    def drop(self, name: int) -> int:
+        """Forget a stretch that is cut; returns the whole edge that it is of."""
+        edge = self._edge[name]
+        self.of[edge] = {n: points for n, points in self.of[edge].items() if n != name}
+        return edge
+
+    def add(self, edge: int, points: Points) -> int:
+        """A new stretch of a whole edge; returns its name."""
+        name = next(self._names)
+        self._edge[name] = edge
+        self.of[edge][name] = points
+        return name

@@ -121,11 +121,7 @@ def _framed(colours: Image) -> list[NDArray[np.bool_]] | None:
         return [canvas]
     half = cv2.resize(colours, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
     light = closed(cv2.cvtColor(half, cv2.COLOR_BGR2GRAY), FINGER)
-    square = np.ones((5, 5), np.uint8)
-    step = 1 - cv2.erode(light, square) / np.maximum(cv2.dilate(light, square), 1).astype(np.float32)
-    rough = median(step[::FEWER, ::FEWER])
-    edges = step > max(STEP, ROUGH * rough)
-    sides = SIDES if rough else 1
+    edges, sides = _edges(light)
     count, labels, stats, _ = cv2.connectedComponentsWithStats((~edges).astype(np.uint8), connectivity=4)
     area = stats[1:, cv2.CC_STAT_AREA]
     if count < 3 or area.max() > (1 - LEAST_SHEET / 2) * light.size:
@@ -144,20 +140,29 @@ def _framed(colours: Image) -> list[NDArray[np.bool_]] | None:
         whole = cv2.resize(sheet, (width, height), interpolation=cv2.INTER_NEAREST)
         if _is_crossed(whole, colours):
             return None
-        # what the rest of the sheet surrounds is filled, and no shadow
-        least = (1 - NOTABLE) * cv2.contourArea(way)
-        others = [tuple(other for other in some if other != k) for k in some]
-        shades = [
-            k
-            for k, rest in zip(some, others, strict=True)
-            if rest and cv2.contourArea(_around(labels, rest)) < least
-        ]
-        parts = [
-            cv2.resize((labels == k).astype(np.uint8), (width, height), interpolation=cv2.INTER_NEAREST)
-            for k in shades
-        ]
+        parts = [(labels == k).astype(np.uint8) for k in _shades(labels, some, cv2.contourArea(way))]
+        parts = [cv2.resize(part, (width, height), interpolation=cv2.INTER_NEAREST) for part in parts]
         return [part > 0 for part in (whole, *parts)]
     return None
+
+
+def _edges(light: Image) -> tuple[NDArray[np.bool_], int]:
+    """Where light changes as at the edge of a sheet, and how many sides of a sheet are to be seen."""
+    import cv2
+
+    square = np.ones((5, 5), np.uint8)
+    step = 1 - cv2.erode(light, square) / np.maximum(cv2.dilate(light, square), 1).astype(np.float32)
+    rough = median(step[::FEWER, ::FEWER])
+    return step > max(STEP, ROUGH * rough), SIDES if rough else 1
+
+
+def _shades(labels: NDArray[Any], some: tuple[int, ...], area: float) -> list[int]:
+    """Of the regions that make a sheet those that may be a shadow on it: the others do not surround them, as they do
+    what is filled. area: of the sheet [pixels]."""
+    import cv2
+
+    rests = [(k, tuple(other for other in some if other != k)) for k in some]
+    return [k for k, rest in rests if rest and cv2.contourArea(_around(labels, rest)) < (1 - NOTABLE) * area]
 
 
 def _canvas(colours: Image) -> NDArray[np.bool_] | None:
