@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 __all__ = ["address", "library"]
 
-ABI = 25  # as core/abi.c says
+ABI = 26  # as core/abi.c says
 _byte = ctypes.c_char
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 

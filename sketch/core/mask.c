@@ -26,15 +26,27 @@ static int is_crest(const uint8_t *p, int32_t width, int32_t reach, float crest,
     return 0;
 }
 
+enum { STRETCH = 32 /* pixels of a row that are looked at together: most of a page is bare */ };
+
+static int darkest(const uint8_t *p, int32_t count) {
+    uint8_t most = 0;
+    for (int32_t k = 0; k < count; k++) most = p[k] > most ? p[k] : most;
+    return most;
+}
+
 /* Mark in `line`, which is 0, the pixels that are darker than `faintest`, no ink of `mask` and on the crest of a line
  * (see is_crest).  Nothing is looked for within `reach` of the picture's edges. */
 INK_API void ink_crests(const uint8_t *darkness, const uint8_t *mask, int32_t width, int32_t height, int32_t faintest,
                         int32_t reach, float crest, float beside, uint8_t *line) {
     for (int32_t y = reach; y < height - reach; y++) {
         const size_t row = (size_t)y * width;
-        for (int32_t x = reach; x < width - reach; x++) {
-            const uint8_t *p = darkness + row + x;
-            if (*p > faintest && !mask[row + x]) line[row + x] = (uint8_t)is_crest(p, width, reach, crest, beside);
+        for (int32_t from = reach; from < width - reach; from += STRETCH) {
+            const int32_t end = from + STRETCH < width - reach ? from + STRETCH : width - reach;
+            if (darkest(darkness + row + from, end - from) <= faintest) continue;
+            for (int32_t x = from; x < end; x++) {
+                const uint8_t *p = darkness + row + x;
+                if (*p > faintest && !mask[row + x]) line[row + x] = (uint8_t)is_crest(p, width, reach, crest, beside);
+            }
         }
     }
 }

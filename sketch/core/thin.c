@@ -142,3 +142,18 @@ INK_API int32_t ink_thin(uint8_t *mask, int32_t width, int32_t height) {
     free(list < next ? list : next);
     return left;
 }
+
+/* How many pixels of a skeleton, as ink_thin leaves it, have one neighbour: the ends of its lines. */
+INK_API int32_t ink_ends(const uint8_t *skeleton, int32_t width, int32_t height) {
+    int offset[8];
+    int32_t ends = 0;
+    neighbour_offsets(width, offset);
+    for (int y = 1; y < height - 1; y++) {
+        const uint8_t *row = skeleton + (size_t)y * width;
+        for (int x = next_ink(row, 1, width - 1); x < width - 1; x = next_ink(row, x + 1, width - 1)) {
+            const unsigned bits = neighbourhood(row + x, offset);
+            ends += bits && !(bits & (bits - 1));
+        }
+    }
+    return ends;
+}

@@ -41,3 +41,30 @@ INK_API int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, i
     free(left);
     return pieces;
 }
+
+/* Measure pieces as ink_pieces lists them: start has one more than there are `pieces`.
+ *
+ * darkness: of the page, or null.  edge: not 0 off the sheet and near its edge, or null.
+ * Out, of each piece: extent (2): how many rows and columns it goes from its first to its last [pixels]; strength: its mean
+ * darkness; at_edge: whether it has a pixel at the sheet's edge; both 0 where that is not given. */
+INK_API void ink_measure_pieces(const int32_t *pixels, const int32_t *start, int32_t pieces, int32_t width,
+                                const uint8_t *darkness, const uint8_t *edge, int32_t *extent, double *strength,
+                                uint8_t *at_edge) {
+    for (int32_t n = 0; n < pieces; n++) {
+        int32_t left = width, right = 0, bottom = 0, top = pixels[start[n]] / width;
+        int64_t dark = 0;
+        uint8_t met = 0;
+        for (int32_t i = start[n]; i < start[n + 1]; i++) {
+            const int32_t y = pixels[i] / width, x = pixels[i] - y * width;
+            left = x < left ? x : left;
+            right = x > right ? x : right;
+            bottom = y > bottom ? y : bottom;
+            dark += darkness ? darkness[pixels[i]] : 0;
+            met |= edge && edge[pixels[i]];
+        }
+        extent[2 * n] = bottom - top; /* pieces begin in their topmost row */
+        extent[2 * n + 1] = right - left;
+        strength[n] = (double)dark / (start[n + 1] - start[n]);
+        at_edge[n] = met;
+    }
+}

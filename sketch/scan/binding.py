@@ -26,8 +26,10 @@ __all__ = [
     "crisp_ink",
     "darkness",
     "distances",
+    "ends",
     "heading",
     "link",
+    "measure_pieces",
     "pieces",
     "smoothed",
     "thin",
@@ -76,6 +78,10 @@ def _library() -> ctypes.CDLL:
     core.ink_distance.restype = None
     core.ink_thin.argtypes = [_MASK, int32, int32]
     core.ink_thin.restype = int32
+    core.ink_ends.argtypes = [_MASK, int32, int32]
+    core.ink_ends.restype = int32
+    core.ink_measure_pieces.argtypes = [pointer, pointer, int32, int32, *[pointer] * 5]
+    core.ink_measure_pieces.restype = None
     core.ink_trace.argtypes = [_MASK, int32, int32, int32, *[_INTS] * 6]
     core.ink_trace.restype = int32
     core.ink_pieces.argtypes = [_MASK, int32, int32, _INTS, _INTS]
@@ -255,6 +261,12 @@ def thin(mask: NDArray[Any]) -> tuple[NDArray[np.uint8], int]:
     return skeleton, count
 
 
+def ends(skeleton: NDArray[np.uint8]) -> int:
+    """How many pixels of a skeleton, as `thin` leaves it, have one neighbour: the ends of its lines."""
+    height, width = skeleton.shape
+    return int(_library().ink_ends(skeleton, width, height))
+
+
 @dataclass(frozen=True, eq=False)
 class Chains:
     """A skeleton as chains of pixels between its nodes.
@@ -311,3 +323,25 @@ def pieces(mask: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     if found < 0:
         raise MemoryError("no memory for the pieces of the ink")
     return pixels[: start[found]], start[:found]
+
+
+def measure_pieces(
+    found: tuple[NDArray[np.int32], NDArray[np.int32]],
+    width: int,
+    dark: NDArray[np.uint8] | None,
+    edge: NDArray[np.uint8] | None,
+) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.bool_]]:
+    """Of each piece, as `pieces` lists them, how many rows and columns it goes from its first to its last, (n, 2), its
+    mean darkness, (n,), and whether it has a pixel at the sheet's edge, (n,): 0 and not where these are not given.
+
+    width: of the mask.  dark, edge: of the page, shape (h, w), as in `Page`.
+    """
+    pixels, start = found
+    count = len(start)
+    bounds = np.append(start, np.int32(len(pixels)))
+    extent, strength, at_edge = np.empty((count, 2), np.int32), np.empty(count), np.empty(count, bool)
+    of = [None if some is None else np.ascontiguousarray(some) for some in (dark, edge)]
+    given = [None if some is None else address(some) for some in of]
+    out = [address(some) for some in (extent, strength, at_edge)]
+    _library().ink_measure_pieces(address(pixels), address(bounds), count, width, *given, *out)
+    return extent, strength, at_edge

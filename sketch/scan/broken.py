@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sketch.scan.binding import along_lines
+from sketch.scan.binding import along_lines, ends
 from sketch.typing import Image
 
 __all__ = ["is_broken", "smooth_lines"]
@@ -23,9 +23,7 @@ def is_broken(skeleton: Image, pen: float) -> bool:
     """Whether lines end much more often than those of a drawing.  pen: its width [pixels]."""
     import cv2
 
-    around = cv2.boxFilter(skeleton, -1, (3, 3), normalize=False)
-    ends = np.count_nonzero((around == 2) & (skeleton > 0))
-    return bool(cv2.countNonZero(skeleton) < WHOLE * pen * ends)
+    return bool(cv2.countNonZero(skeleton) < WHOLE * pen * ends(skeleton))
 
 
 def smooth_lines(darkness: Image, noise: float, reach: int) -> Image:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import crests, crisp_ink, darkness, link, pieces
+from sketch.scan.binding import crests, crisp_ink, darkness, link, measure_pieces, pieces
 from sketch.scan.broken import smooth_lines
 from sketch.scan.framed import within_frame
 from sketch.scan.punched import punched
@@ -337,17 +337,8 @@ class _Pieces:
 
 
 def _measure(mask: Image, page: Page | None) -> _Pieces:
-    pixels, start = pieces(mask)
-    if not len(start):
-        nothing = np.zeros(0)
-        none = np.zeros((0, 2), np.int32)
-        return _Pieces(pixels[:0], nothing.astype(np.int64), nothing, none, nothing.astype(bool))
-    y, x = np.divmod(pixels, mask.shape[1])
+    pixels, start = found = pieces(mask)
+    dark, edge = (None, None) if page is None else (page.darkness, page.edge)
+    extent, strength, at_edge = measure_pieces(found, mask.shape[1], dark, edge)
     area = np.diff(np.append(start, len(pixels)))
-    extent = np.stack([np.maximum.reduceat(v, start) - np.minimum.reduceat(v, start) for v in (y, x)], axis=1)
-    strength, at_edge = np.zeros(len(start)), np.zeros(len(start), bool)
-    if page is not None:
-        strength = np.add.reduceat(page.darkness.ravel()[pixels].astype(np.float64), start) / area
-        if page.edge is not None:
-            at_edge = np.maximum.reduceat(page.edge.ravel()[pixels], start) > 0
     return _Pieces(pixels, area, strength, extent, at_edge)

@@ -27,11 +27,10 @@ def centre_on_ink(graph: Graph, darkness: NDArray[Any], pen: float) -> None:
     if not graph.edges:
         return
     points = np.concatenate([edge.points for edge in graph.edges])
-    normals = np.concatenate([_normals(edge.points) for edge in graph.edges])
+    normals = _normals(points, np.array([len(edge.points) for edge in graph.edges]))
     reach = 0.5 * pen + 1.0
     offsets = np.arange(-reach, reach + STEP / 2, STEP)
-    at = points[:, None, :] + normals[:, None, :] * offsets[None, :, None]
-    x, y = at[..., 0].astype(np.float32), at[..., 1].astype(np.float32)
+    x, y = ((points[:, k, None] + normals[:, k, None] * offsets).astype(np.float32) for k in (0, 1))
     ink = _sample(cv2.GaussianBlur(darkness, (3, 3), 0), x, y)
     ink = np.maximum(ink - PALE * ink.max(axis=1, keepdims=True), 0.0)
     total = ink.sum(axis=1)
@@ -46,13 +45,15 @@ def centre_on_ink(graph: Graph, darkness: NDArray[Any], pen: float) -> None:
             edge.points[-1] = edge.points[0]
 
 
-def _normals(points: Points) -> Points:
-    """Unit vectors across a chain, from the points two before and two after."""
-    count = len(points)
-    if count < 2:
-        return np.zeros_like(points)
-    index = np.arange(count)
-    along = points[np.minimum(index + 2, count - 1)] - points[np.maximum(index - 2, 0)]
+def _normals(points: Points, lengths: NDArray[np.intp]) -> Points:
+    """Unit vectors across chains, given one after another, from the points two before and two after.
+
+    lengths: of the chains, in points.
+    """
+    ends = np.cumsum(lengths)
+    first, last = np.repeat(ends - lengths, lengths), np.repeat(ends - 1, lengths)
+    index = np.arange(len(points))
+    along = points[np.minimum(index + 2, last)] - points[np.maximum(index - 2, first)]
     size = np.hypot(along[:, 0], along[:, 1])
     along /= np.where(size > 0, size, 1.0)[:, None]
     return np.stack([-along[:, 1], along[:, 0]], axis=1)

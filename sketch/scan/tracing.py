@@ -143,13 +143,13 @@ def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any
     """The width of the pen: the ink's area over its length, without what is filled."""
     import cv2
 
-    thickness = distance[skeleton > 0]
+    thickness = distance[skeleton.view(np.bool_)]
     core = 2 * FILL * percentile(thickness, 20)
     pen = cv2.countNonZero(mask) / len(thickness)
     if (thick := float(thickness.max())) > core:
         side = 2 * round(2 * core) + 1  # also into its corners
-        unfilled = cv2.dilate((distance > core).view(np.uint8), np.ones((side, side), np.uint8)) == 0
-        area, length = (int(np.count_nonzero(unfilled & (some > 0))) for some in (mask, skeleton))
+        filled = cv2.dilate((distance > core).view(np.uint8), np.ones((side, side), np.uint8))
+        area, length = (int(np.count_nonzero(some > filled)) for some in (mask, skeleton))
         without = area / length if length else ANY_PEN
         pen = without if thick > FILL * without else pen  # a blot is not filled
     return pen if pen < FILLED * mask.size**0.5 else ANY_PEN

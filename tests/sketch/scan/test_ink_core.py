@@ -12,12 +12,17 @@ from sketch.scan.binding import (
     bend,
     coarseness,
     course_length,
+    crests,
     crisp_ink,
     darkness,
     distances,
+    ends,
     heading,
     link,
+    measure_pieces,
+    pieces,
     smoothed,
+    thin,
     turns,
 )
 from sketch.scan.fills import fill_grain
@@ -44,6 +49,42 @@ def test_crisp_ink_is_darker_than_half_of_the_darkest() -> None:
     expected = np.clip(np.rint(dark + 0.5 * (dark.astype(float) - mean)), 0, 255)
     assert np.array_equal(crisp, expected)
     assert np.array_equal(mask, (expected > darkest // 2) & (dark > 40))
+
+
+def test_crests_are_found_all_over_a_row() -> None:
+    dark = np.zeros((20, 150), np.uint8)
+    columns = np.arange(4, 146, 9)
+    dark[:, columns] = 90
+    found = crests(dark, np.zeros_like(dark), 30, 4, 1.2, 0.6)
+    assert np.array_equal(np.flatnonzero(found[10]), columns)
+    assert not crests(dark, np.zeros_like(dark), 90, 4, 1.2, 0.6).any()
+
+
+def test_pieces_are_measured_as_they_lie() -> None:
+    rng = np.random.default_rng(5)
+    mask = (rng.random((40, 60)) < 0.3).astype(np.uint8)
+    dark, edge = rng.integers(0, 256, (2, 40, 60), dtype=np.uint8)
+    edge[:, 20:] = 0
+    pixels, start = found = pieces(mask)
+    extent, strength, at_edge = measure_pieces(found, 60, dark, edge)
+    for k, own in enumerate(np.split(pixels, start[1:])):
+        y, x = np.divmod(own, 60)
+        assert extent[k].tolist() == [np.ptp(y), np.ptp(x)]
+        assert strength[k] == pytest.approx(dark[y, x].mean())
+        assert at_edge[k] == edge[y, x].any()
+    assert 1 < np.count_nonzero(at_edge) < len(start)
+    same, nothing, nowhere = measure_pieces(found, 60, None, None)
+    assert np.array_equal(same, extent)
+    assert not nothing.any()
+    assert not nowhere.any()
+    assert len(measure_pieces(pieces(np.zeros_like(mask)), 60, dark, edge)[0]) == 0
+
+
+def test_a_skeleton_ends_where_it_has_one_neighbour() -> None:
+    mask = np.zeros((50, 70), np.uint8)
+    mask[20:24, 5:60] = mask[5:45, 30:34] = 1  # a cross
+    mask[40:43, 50:65] = 1  # and a dash
+    assert ends(thin(mask)[0]) == 6
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.5, 1.2, 2.0, 2.9])
