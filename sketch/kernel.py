@@ -214,12 +214,12 @@ def fit_closed(
 ) -> ClosedFit:
     """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
-    ends = np.cumsum([len(p) for p in parts], dtype=np.int32)
+    ends = (_int * len(parts))(*accumulate(map(len, parts)))
     out = np.empty(_OFFSETS[-1] + 2 * len(xy) + LIFT * len(parts))
     at = address(out)
     _closed(
         address(xy),
-        address(ends),
+        ctypes.addressof(ends),
         len(parts),
         least_axis,
         cap,
