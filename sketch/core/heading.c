@@ -10,6 +10,20 @@ INK_API double ink_length(const double *xy, int32_t n) {
     return sum;
 }
 
+/* Which of n points is nearest to a place, the first of several. */
+INK_API int32_t ink_nearest(const double *xy, int32_t n, double x, double y) {
+    double least = INFINITY;
+    int32_t at = 0;
+    for (int32_t i = 0; i < n; i++) {
+        const double off = hypot(xy[2 * i] - x, xy[2 * i + 1] - y);
+        if (off < least) {
+            least = off;
+            at = i;
+        }
+    }
+    return at;
+}
+
 /* The direction of the line through n points that fits them best, the way that they go. */
 static void direction_of(const double *xy, int32_t n, double *u) {
     double x = 0, y = 0, xx = 0, xy2 = 0, yy = 0;

@@ -30,6 +30,7 @@ __all__ = [
     "heading",
     "link",
     "measure_pieces",
+    "nearest",
     "pieces",
     "smoothed",
     "thin",
@@ -68,6 +69,8 @@ def _library() -> ctypes.CDLL:
     core.ink_turns.restype = None
     core.ink_smooth.argtypes = [pointer, int32, pointer, int32, int32, pointer]
     core.ink_smooth.restype = None
+    core.ink_nearest.argtypes = [pointer, int32, double, double]
+    core.ink_nearest.restype = int32
     core.ink_length.argtypes = [pointer, int32]
     core.ink_length.restype = double
     core.ink_coarseness.argtypes = [*[pointer] * 3, int32, pointer, int32, int32, double, double]
@@ -119,6 +122,12 @@ def course_length(points: Points) -> float:
     """The length of a course, (n, 2) [pixels]."""
     line = np.ascontiguousarray(points)
     return float(_library().ink_length(address(line), len(line)))
+
+
+def nearest(points: Points, place: Points) -> int:
+    """Which of some points, (n, 2), is nearest to a place, (2,), the first of several."""
+    line = np.ascontiguousarray(points)
+    return int(_library().ink_nearest(address(line), len(line), *place.tolist()))
 
 
 def turns(points: Points, cut: int) -> NDArray[np.float64]:

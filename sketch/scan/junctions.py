@@ -95,9 +95,11 @@ def find_junctions(graph: Graph, pen: float) -> list[Junction]:
         ends[crossing[node]].extend(end for end in meeting if end[0] not in inner)
     for k, nodes in members.items():
         # a ring's node stands for all its area
-        centre = np.average(graph.nodes[nodes], axis=0, weights=graph.radius[nodes] ** 2 + 1e-9)
-        spread = float(np.max(np.hypot(*(graph.nodes[nodes] - centre).T)))
-        reach = max(float(np.max(graph.radius[nodes])), spread + pen / 2)
+        places, radii = graph.nodes[nodes], graph.radius[nodes]
+        weights = radii**2 + 1e-9
+        centre = (places * weights[:, None]).sum(axis=0) / weights.sum()
+        spread = float(np.hypot(*(places - centre).T).max())
+        reach = max(float(radii.max()), spread + pen / 2)
         for end in ends[k]:
             points, sight = graph.outward(end), SIGHT * pen
             if _is_loop(graph.edges[end[0]].ends, crossing):  # its other end shows where it comes from

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from sketch.scan.binding import nearest
 from sketch.scan.courses import Course, Links
 from sketch.scan.graph import RING, End, Graph
 from sketch.scan.junctions import LONELY, Branch, Junction, Pairs, turn_cost
@@ -260,8 +261,8 @@ class Layout:
         points = self.graph.outward(begin)
         finish = (begin[0], 1 - begin[1])
         head, tail = self.branch_of.get(begin), self.branch_of.get(finish)
-        lo = int(np.argmin(np.hypot(*(points - head.start).T))) if head else 0
-        hi = int(np.argmin(np.hypot(*(points - tail.start).T))) + 1 if tail else len(points)
+        lo = nearest(points, head.start) if head else 0
+        hi = nearest(points, tail.start) + 1 if tail else len(points)
         kept = [points[lo:hi] if lo < hi else points[len(points) // 2 : len(points) // 2 + 1]]
         if head and begin not in links:
             kept.insert(0, _reach_out(head)[None])

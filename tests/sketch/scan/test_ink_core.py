@@ -20,6 +20,7 @@ from sketch.scan.binding import (
     heading,
     link,
     measure_pieces,
+    nearest,
     pieces,
     smoothed,
     thin,
@@ -151,6 +152,13 @@ def test_the_bend_of_an_arc_is_its_curvature() -> None:
     assert bend(corner, corner[0], 11.0, 0.04) == 0
     assert bend(arc[:4], arc[0], 12.0, 0.04) == 0
     assert course_length(arc) == pytest.approx(60, rel=1e-4)
+
+
+def test_the_nearest_of_some_points_is_the_first_of_several() -> None:
+    points = np.random.default_rng(1).integers(0, 9, (200, 2)).astype(np.float64)
+    for place in (np.array([4.0, 4.0]), np.array([-3.0, 20.0]), points[150]):
+        for some in (points, points[::-1]):
+            assert nearest(some, place) == int(np.hypot(*(some - place).T).argmin())
 
 
 @pytest.mark.parametrize("cut", [1, 4, 9])
