@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from sketch.kernel import beside, depth
-from sketch.pins import PINNED, is_pinned
+from sketch.pins import PINNED, REACH, is_over
 from sketch.proposals import Pick, Proposed, Row
 from sketch.scoring import Fitted
 from sketch.typing import Array
@@ -37,6 +37,10 @@ DENSE = 64  # points of an open line that are compared with others, or so
 TWIG = 0.04  # of what is drawn: an open line, or an arrow, that is shorter is a slip too
 DOT = 0.012  # of what is drawn: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
+# of a ring's extent: a line so near to its middle goes into it; the sides of a box that is as wide run along its rim
+THROUGH_RING = 0.3
+HELD = 12.5  # nats that an open line is likelier a rod for each of its ends that a small ring holds
+LINKED = 5.0  # nats that an outline is rarer for each such end among its strokes
 
 
 class Context:
@@ -58,6 +62,11 @@ class Context:
         """
         chosen = [(proposed[p].candidates[k], proposed[p].rows[k]) for p, k in likely]
         bodies = {c: row for c, row in chosen if c.closed or c.kind in ("cross", "bar")}
+        held = _held(proposed, bodies)
+        for p in proposed if held else ():  # rods, though their ink may go around with others
+            bodies |= {
+                p.candidates[k]: p.rows[k] for k in p.bars if p.candidates[k] in held and p.gains[k] > 0
+            }
         others = {
             c: row for c, row in (self._bodies | bodies).items() if c not in bodies or c not in self._bodies
         }
@@ -70,7 +79,8 @@ class Context:
             body, row = every[b]
             near[anew[k]][body] = row
         told = [
-            _told(p, _Bodies(near[k]), size, drawn) if k in near else known[p] for k, p in enumerate(proposed)
+            _told(p, _Bodies(near[k], held), size, drawn) if k in near else known[p]
+            for k, p in enumerate(proposed)
         ]
         self._known = dict(zip(proposed, told, strict=True))
         self._bodies, self._sizes = bodies, (size, drawn)
@@ -79,6 +89,23 @@ class Context:
             out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
             own[k] -= TOUCHING
         return out
+
+
+def _held(proposed: list[Proposed], bodies: Around) -> dict[Fitted, int]:
+    """How many ends of each open line that is proposed are in a ring among the likely bodies, if any is."""
+    rings = [(*c.middle, row[4]) for c, row in bodies.items() if c.closed]
+    ends = [(p.candidates[k], at) for p in proposed for k, at in p.ends] if rings else []
+    if not ends:
+        return {}
+    places, (x, y, wide) = np.array([at for _, at in ends]), np.array(rings).T
+    along = places[:, 1] - places[:, 0]
+    long = np.hypot(*along.T)[:, None]
+    u, v = x - places[:, :1, 0], y - places[:, :1, 1]
+    through = np.abs(along[:, :1] * v - along[:, 1:] * u) < THROUGH_RING * wide * long
+    away = np.hypot(places[:, :, :1] - x, places[:, :, 1:] - y)
+    its = (away < REACH * wide) & (through & (PINNED * wide < long))[:, None]
+    held = its.any(axis=2).sum(axis=1).tolist()
+    return {line: count for (line, _), count in zip(ends, held, strict=True) if count}
 
 
 def _beside(proposed: list[Proposed], bodies: Around) -> list[list[int]]:
@@ -97,6 +124,10 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
         extent = row[4]
         if c.closed and extent < DOT * drawn:  # where the pen rested
             gains[k] -= 0.5 * (math.log(DOT * drawn / max(extent, 1e-9)) / DOT_SPREAD) ** 2
+        if c.kind == "bar":
+            gains[k] += HELD * bodies.held.get(c, 0)
+        elif c.closed and len(c.pieces) > 1:
+            gains[k] -= LINKED * sum(bodies.held_of.get(i, 0) for i in c.pieces)
         if len(c.pieces) > 1 and extent < LARGEST * drawn:
             if c.kind == "cross":
                 gains[k] -= WITHIN * (c.rough > SCRAWLED)
@@ -104,21 +135,18 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
                 gains[k] -= WRITTEN
         if c.kind == "cross":
             large = extent > LARGE * size
-            if bodies.around(c, 0.0):
+            if bodies.under(c, extent):
                 gains[k] += ANCHORS
             elif not bodies.reached(c):
                 gains[k] -= NO_BODY * (1 + large)
         elif c.kind == "arrow":
-            gains[k] -= ANCHORS * (bodies.around(c, 0.0) > 0)
+            gains[k] -= ANCHORS * (bodies.under(c, extent) > 0)
             slips = len(c.pieces) * (extent < TWIG * drawn)  # each stroke of a tiny one is
             gains[k] -= SLIP * (slips + bodies.slip(c, extent))
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)
-        elif c.kind == "circle" and (
-            bodies.around(c, extent / 2, PINNED * extent) + bodies.lines_in(c, extent) > 1
-            or bodies.axle(c, extent)
-        ):
+        elif c.kind == "circle" and (bodies.joined(c, extent) > 1 or bodies.axle(c, extent)):
             gains[k] += ANCHORS
     return gains
 
@@ -187,25 +215,27 @@ def _dense(line: Array) -> Array:
 class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
-    def __init__(self, bodies: Around) -> None:
+    def __init__(self, bodies: Around, held: dict[Fitted, int]) -> None:
+        """held: of open lines, how many of their ends small rings hold."""
+        self.held = held
+        # likewise of each stroke that may be one
+        self.held_of = {line.pieces[0]: held.get(line, 0) for line in bodies if line.kind == "bar"}
         self.closed = [(body, row) for body, row in bodies.items() if body.closed]
         self.lines = [(c, row[4]) for c, row in bodies.items() if c.kind == "bar"]
         self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]
 
-    def around(self, c: Fitted, reach: float, least: float = 0.0) -> int:
-        """How many bodies of other ink, at least so large, have c's centre within them or within `reach`."""
-        if not self.closed:
-            return 0
-        (x, y), count = c.middle, 0
-        for body, (x0, y0, x1, y1, extent) in self.closed:
-            if (
-                x0 - reach <= x <= x1 + reach
-                and y0 - reach <= y <= y1 + reach
-                and extent > least
-                and not set(c.pieces).intersection(body.pieces)
-            ):
-                count += depth(x, y, body.outline) < reach
+    def under(self, mark: Fitted, extent: float, least: float = 0.0) -> int:
+        """How many bodies, of extents of more than `least`, a mark is over."""
+        (x, y), count = mark.middle, 0
+        for body, (x0, y0, x1, y1, large) in self.closed:
+            if large > least and x0 - extent < x < x1 + extent and y0 - extent < y < y1 + extent:
+                count += is_over(mark, extent, body, large)
         return count
+
+    def joined(self, ring: Fitted, extent: float) -> int:
+        """How many bodies and open lines, all much larger, a small circle is over."""
+        lines = sum(is_over(ring, extent, line, long) for line, long in self.lines)
+        return lines + self.under(ring, extent, PINNED * extent)
 
     def reached(self, cross: Fitted) -> bool:
         """Whether a bar of an X ends in a body of other ink: its middle misses it by a slip of the hand."""
@@ -220,10 +250,6 @@ class _Bodies:
             and any(depth(x, y, body.outline) < 0 for x, y in cross.outline.tolist())
             for body, (x0, y0, x1, y1, extent) in self.closed
         )
-
-    def lines_in(self, c: Fitted, extent: float) -> int:
-        """How many open lines c would be a pin of."""
-        return sum(is_pinned(line, long, c, extent) for line, long in self.lines)
 
     def axle(self, c: Fitted, extent: float) -> bool:
         """Whether a small circle is at the middle of a round body of other ink."""
@@ -262,6 +288,6 @@ class _Bodies:
             (x, y), reach = mark.middle, ON_LINE * extent
             if x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach:
                 off = np.hypot(*(_dense(line.outline) - (x, y)).T).min()
-                if off < reach and not self.around(mark, 0.0):
+                if off < reach and not self.under(mark, extent):
                     return True
         return False

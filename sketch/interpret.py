@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Set
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from sim.scene import Joint, Scene, View
 from sketch.bodies import Bodies, Drawn, draw_body, touch
 from sketch.ink import Sketch
 from sketch.kernel import depth
+from sketch.pins import is_on_line
 from sketch.reading import Reading
 from sketch.tidy import close_gaps, straighten
 from sketch.typing import Array
@@ -55,7 +56,8 @@ def interpret(
         for k, r in enumerate((r for r in readings if r.solid), start=1)
     ]
     bodies = Bodies(drawn)
-    joints = _pivots(sketch, bodies, view.pixels_per_metre, PIN * max(longer, wide), notes)
+    fixed = {d for r in readings if r.kind == "anchor" if (d := _anchored(r, bodies)[0]) is not None}
+    joints = _pivots(sketch, bodies, fixed, view.pixels_per_metre, PIN * max(longer, wide), notes)
     drawn = [d for d in drawn if d.reading.solid]
     _number(drawn, joints)
     for reading in readings:
@@ -121,10 +123,13 @@ def _number(drawn: list[Drawn], joints: list[Joint]) -> None:
 # ---------------------------------------------------------------- pivots
 
 
-def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[str]) -> list[Joint]:
+def _pivots(
+    sketch: Sketch, bodies: Bodies, fixed: Set[Drawn], ppm: float, pin: float, notes: list[str]
+) -> list[Joint]:
     """Small circles over bodies that overlap, or over one beside which they are small, become pivots.
 
-    pin: radius that one to the background hardly exceeds [pixels].
+    fixed: those that are anchored.  pin: radius that one to the background, or of an open line, hardly exceeds
+    [pixels].
     """
     joints: list[Joint] = []
     places: list[tuple[Array, float, list[Drawn], list[Drawn], Joint]] = []
@@ -135,12 +140,12 @@ def _pivots(sketch: Sketch, bodies: Bodies, ppm: float, pin: float, notes: list[
         at = circle.outline.mean(axis=0)
         radius = circle.size / math.sqrt(math.pi)
         forced = circle.reading.forced == "pivot"
-        under, further, odds = _under(sketch, circle, at, radius, bodies)
+        under, further, odds = _under(sketch, circle, at, radius, bodies, fixed)
         if forced:
             under, odds = under or [d for _, d in _near(circle, at, NEAR * radius, bodies)][:1], 1.0
         if not under:
             continue
-        if len(under) == 1 and not forced:
+        if (len(under) == 1 or any(d.reading.kind == "bar" for d in under)) and not forced:
             odds *= 1 / (1 + (radius / pin) ** 6)
         if not forced and _pinned(circle, at, radius, bodies):
             odds /= odds + (1 - odds) * WHEEL
@@ -195,7 +200,7 @@ def _pinned(circle: Drawn, at: Array, radius: float, bodies: Bodies) -> bool:
 
 
 def _under(
-    sketch: Sketch, circle: Drawn, at: Array, radius: float, bodies: Bodies
+    sketch: Sketch, circle: Drawn, at: Array, radius: float, bodies: Bodies, fixed: Set[Drawn]
 ) -> tuple[list[Drawn], list[Drawn], float]:
     """The two bodies that a circle would be a pivot of, or one, in order of drawing; further ones that it goes through;
     and how likely it is a pivot rather than a ball.
@@ -209,8 +214,8 @@ def _under(
     further: list[Drawn] = []
     if over:
         (_, first), *rest = near
-        missed = [d for depth, d in rest if depth >= 0 and _off_ink(sketch, d, at) < radius]
-        first, *others = every = _foremost([first, *(d for depth, d in rest if depth < 0)], missed)
+        missed = [d for depth, d in rest if depth > 0 and _off_ink(sketch, d, at) < radius]
+        first, *others = every = _foremost([first, *(d for depth, d in rest if depth <= 0)], missed)
         further = [
             d for d in others[1:] if d not in missed and not any(_holds(d, e) for e in every if e is not d)
         ]
@@ -225,13 +230,30 @@ def _under(
     if not others:
         others = [d for depth, d in rest if d is not first and depth < reach and touch(first, d, at, radius)]
     if over and not others:
-        others = _axle(first, circle, at, radius, bodies)
+        others = _axle(first, circle, at, radius, bodies) or _missed(first, rest, at, radius, fixed)
     under = [first, *others[:1]]
     if not over and len(under) == 1:
         return [], [], 0.0
     limit = JOINS if len(under) == 2 and over else NAILS
     odds = 1 / (1 + (radius / (limit * min(d.size for d in under))) ** 6)
     return sorted(under, key=bodies.drawn.index), further, odds
+
+
+def _missed(
+    first: Drawn, near: list[tuple[float, Drawn]], at: Array, radius: float, fixed: Set[Drawn]
+) -> list[Drawn]:
+    """What a ring over one body misses by more than a slip of the hand, where it says nothing else.
+
+    A pin from an anchored body to the page means nothing, and one to an anchored body holds as one to the page does;
+    and no rod ends beside a ring by chance.
+    """
+    found = [d for depth, d in near if depth < NEAR * radius and (d in fixed) != (first in fixed)]
+    ends = [d for _, d in near if d.reading.kind == "bar" and _ends_near(d, at, NEAR * radius)]
+    return found or ends
+
+
+def _ends_near(d: Drawn, at: Array, reach: float) -> bool:
+    return bool(np.hypot(*(d.reading.outline[[0, -1]] - at).T).min() < reach)
 
 
 def _foremost(over: list[Drawn], missed: list[Drawn]) -> list[Drawn]:
@@ -261,8 +283,17 @@ def _near(circle: Drawn, at: Array, reach: float, bodies: Bodies) -> list[tuple[
         for d in bodies.near(at, reach)
         if d is not circle and d.reading.solid and radius < 2 * JOINS * d.size
     ]
-    near = [(off, d) for d in large if (off := d.depth(at)) < reach]
+    near = [(off, d) for d in large if (off := _off(d, at, radius)) < reach]
     return sorted(near, key=lambda t: t[0])
+
+
+def _off(d: Drawn, at: Array, radius: float) -> float:
+    """How far a ring's middle is from a body [pixels], negative inside; 0 from an open line that it is over."""
+    depth, line = d.depth(at), d.reading.outline
+    if d.reading.kind == "bar" and depth > 0:
+        long = float(np.hypot(*np.ptp(line, axis=0)))
+        depth *= not is_on_line(at.tolist(), math.sqrt(8) * radius, line, long)
+    return depth
 
 
 def _axle(wheel: Drawn, circle: Drawn, at: Array, radius: float, bodies: Bodies) -> list[Drawn]:
@@ -292,10 +323,9 @@ def _joined(wheel: Drawn, other: Drawn, circle: Drawn, bodies: Bodies) -> bool:
     r = wheel.size / math.sqrt(math.pi)
     rings = (d for d in bodies.near(wheel.outline.mean(axis=0), r) if d.reading.kind in ("circle", "pivot"))
     return any(
-        wheel.depth(at) < 0 and other.depth(at) < 0
+        all(_off(d, ring.outline.mean(axis=0), ring.size / math.sqrt(math.pi)) <= 0 for d in (wheel, other))
         for ring in rings
         if ring not in (circle, wheel) and ring.size < 2 * circle.size
-        for at in (ring.outline.mean(axis=0),)
     )
 
 
@@ -319,26 +349,33 @@ def _either(circle: Drawn, taken: str, other: str) -> str:
 # ---------------------------------------------------------------- anchors, gravity, doubts
 
 
-def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
-    """Fix the body that an X lies over: of several the one drawn last that holds half of its bars' ends at least; of
-    none the one that its bars reach."""
-    at = reading.outline.mean(axis=0)
-    reach = float(np.hypot(*np.ptp(reading.outline, axis=0))) / 2
+def _anchored(cross: Reading, bodies: Bodies) -> tuple[Drawn | None, list[Drawn], list[Drawn]]:
+    """The body that an X fixes, those that it lies over, and of these those that hold half of its bars' ends at least.
+
+    Of several that hold them it is the one drawn last; of none the one that its bars reach.
+    """
+    at = cross.outline.mean(axis=0)
+    reach = float(np.hypot(*np.ptp(cross.outline, axis=0))) / 2
     near = [(d.depth(at), d) for d in bodies.near(at, reach) if d.reading.solid]
     over = [d for depth, d in near if depth < 0]
     if not over:
         depth, nearest = min(near, key=lambda t: t[0], default=(reach, None))
         over = [nearest] if nearest is not None and depth < reach else []
-    if not over:
+    # a rod that runs under an X, and holds none of it, is not what the X was drawn on
+    held = [d for d in over if 2 * sum(d.depth(end) < 0 for end in cross.outline) >= len(cross.outline)]
+    return max(held or over, key=lambda d: d.reading.strokes[-1], default=None), over, held
+
+
+def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
+    """Fix the body that an X is drawn on."""
+    body, over, held = _anchored(reading, bodies)
+    if body is None:
         notes.append(f"the X of {reading.named} is over no body: it anchors nothing")
         return
-    # a rod that runs under an X, and holds none of it, is not what the X was drawn on
-    held = [d for d in over if 2 * sum(d.depth(end) < 0 for end in reading.outline) >= len(reading.outline)]
-    top = max(held or over, key=lambda d: d.reading.strokes[-1])
-    top.body.anchored = True
+    body.body.anchored = True
     if len(over) > 1:
         why = "in which it was drawn" if len(held) == 1 else "drawn last"
-        notes.append(f"the X of {reading.named} is over {_ids(over)}: it anchors {top.body.id}, {why}")
+        notes.append(f"the X of {reading.named} is over {_ids(over)}: it anchors {body.body.id}, {why}")
 
 
 def _gravity(readings: list[Reading], notes: list[str]) -> tuple[float, float]:

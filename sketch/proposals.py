@@ -117,6 +117,11 @@ class Proposed:
         return [k for k, c in enumerate(self.candidates) if c.kind == "bar"]
 
     @cached_property
+    def ends(self) -> list[tuple[int, list[list[float]]]]:
+        """The ends of each bar, with which of the candidates it is [pixels]."""
+        return [(k, self.candidates[k].outline[[0, -1]].tolist()) for k in self.bars]
+
+    @cached_property
     def borrowing(self) -> bool:
         """Whether some have a side of another body."""
         return any(c.lender >= 0 for c in self.candidates)

@@ -12,7 +12,7 @@ import numpy as np
 from sketch.hatching import hatching
 from sketch.kernel import depth, words
 from sketch.pieces import Page, Piece
-from sketch.pins import is_pinned
+from sketch.pins import REACH, is_over
 from sketch.proposals import Pick, Proposed, Row
 from sketch.scoring import Fitted
 from sketch.typing import Point
@@ -30,7 +30,6 @@ MARKED = {"circle": 1.7, "cross": 1.25}
 NEXT = {"circle": 0.5, "cross": 0.3}
 SAME = 0.1  # and between strokes of one
 CLEAR = 0.08  # of a body's narrower half: as far from its outline as what is written in it is, at least
-RADIUS = 0.5  # of a ring's extent: it is over what it touches
 SPOKE = 0.05  # of its length, what a spoke bends
 STRAIGHT = 0.9  # of its length, the distance of the ends of a letter's bar, at least
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
@@ -201,7 +200,7 @@ class _Marks:
         if c.kind != "circle":
             return False
         bodies = len(self._under(c, extent))
-        return bodies > 1 or bodies + sum(is_pinned(line, long, c, extent) for line, long in self._lines) > 1
+        return bodies > 1 or bodies + sum(is_over(c, extent, line, long) for line, long in self._lines) > 1
 
     def _is_pinned_again(self, body: Fitted, c: Fitted) -> bool:
         """Whether another small ring than c lies over a body and no other: eyes, and no nails."""
@@ -256,15 +255,11 @@ class _Marks:
     def _under(self, c: Fitted, extent: float) -> list[Fitted]:
         """The bodies of other ink, that are larger, that its middle is over; or that a ring is over."""
         if c not in self._known:
-            at, reach = np.array(c.middle), RADIUS * extent * (c.kind == "circle")
+            at, reach = np.array(c.middle), REACH * extent * (c.kind == "circle")
             near = ((self._boxes[:, :2] - reach < at) & (self._boxes[:, 2:] + reach > at)).all(axis=1)
             near &= self._extents > OVER * extent
-            bodies = (self._bodies[k] for k in np.flatnonzero(near).tolist())
-            self._known[c] = [
-                b
-                for b in bodies
-                if set(c.pieces).isdisjoint(b.pieces) and depth(*c.middle, b.outline) < reach
-            ]
+            bodies = ((self._bodies[k], self._extents[k]) for k in np.flatnonzero(near).tolist())
+            self._known[c] = [b for b, large in bodies if is_over(c, extent, b, large)]
         return self._known[c]
 
 

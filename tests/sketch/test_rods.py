@@ -1,0 +1,82 @@
+"""Open lines on pins: rods and ropes."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from pages import box, read
+
+from sketch.synthetic import HANDS, arrow, circle, cross, line, outline
+
+Point = tuple[float, float]
+SEEDS = range(4)
+
+
+@pytest.mark.parametrize("hand", ["neat", "pieces", "shaky"])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_lines_with_a_pin_at_each_end_are_rods_though_they_go_around(hand: str, seed: int) -> None:
+    """A four-bar linkage: with the base's side its three lines would close."""
+    rng = np.random.default_rng(seed)
+    base = outline(box(640, 620, 760, 80), HANDS[hand], rng) + cross((640, 620), 40, HANDS[hand], rng)
+    at: list[Point] = [(370, 604), (350, 430), (920, 310), (900, 604)]
+    rods = [s for a, b in itertools.pairwise(at) for s in line([a, b], HANDS[hand], rng)]
+    pins = [s for p in at for s in circle(p, 9, HANDS[hand], rng)]
+    scene = read(base, rods, pins, arrow((90, 150), (90, 270), HANDS[hand], rng)).scene
+    assert len(scene.bodies) == 4
+    joined = [("b1", "b2"), ("b1", "b4"), ("b2", "b3"), ("b3", "b4")]
+    assert sorted(tuple(sorted(map(str, joint.bodies))) for joint in scene.joints) == joined
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_frame_of_three_strokes_that_hangs_by_one_pin_is_a_body(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    corners: list[Point] = [(640, 200), (860, 560), (420, 560)]
+    sides = [
+        s for a, b in itertools.pairwise([*corners, corners[0]]) for s in line([a, b], HANDS["neat"], rng)
+    ]
+    scene = read(sides, circle(corners[0], 9, HANDS["neat"], rng)).scene
+    assert len(scene.bodies) == 1
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_ropes_pinned_to_a_wheel_are_not_what_it_turns_on(seed: int) -> None:
+    """A wheel nailed to the page, and two weights on ropes from its rim."""
+    rng = np.random.default_rng(seed)
+    hand = HANDS["neat"]
+    strokes = [*circle((640, 200), 80, hand, rng), *circle((640, 200), 9, hand, rng)]
+    for x, low in ((574, 430), (706, 520)):
+        strokes += line([(x, 204), (x, low)], hand, rng) + circle((x, 204), 8, hand, rng)
+        strokes += outline(box(x, low + 40, 100, 90), hand, rng) + circle((x, low + 4), 8, hand, rng)
+    scene = read(strokes).scene
+    assert len(scene.bodies) == 5
+    joined = [("b1", "None"), ("b1", "b2"), ("b1", "b4"), ("b2", "b3"), ("b4", "b5")]
+    assert sorted(tuple(map(str, joint.bodies)) for joint in scene.joints) == sorted(joined)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_bob_at_the_end_of_a_line_is_no_pin_of_it(seed: int) -> None:
+    """Two pendulums that touch; each line ends in its bob's own pin."""
+    rng = np.random.default_rng(seed)
+    hand = HANDS["neat"]
+    strokes = outline(box(640, 110, 600, 56), hand, rng) + cross((420, 110), 34, hand, rng)
+    for x in (602, 678):
+        strokes += line([(x, 114), (x, 420)], hand, rng) + circle((x, 114), 8, hand, rng)
+        strokes += circle((x, 420), 37, hand, rng) + circle((x, 420), 8, hand, rng)
+    scene = read(strokes).scene
+    joined = [("b1", "b2"), ("b1", "b4"), ("b2", "b3"), ("b4", "b5")]
+    assert sorted(tuple(map(str, joint.bodies)) for joint in scene.joints) == joined
+
+
+@pytest.mark.parametrize("gap", [4, 11])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_ring_in_an_anchored_beam_joins_what_hangs_below_it(seed: int, gap: float) -> None:
+    """The ring misses the rod, at most by twice its radius; to the page it would pin what is anchored already."""
+    rng = np.random.default_rng(seed)
+    hand = HANDS["neat"]
+    beam = outline(box(640, 140, 600, 56), hand, rng) + cross((420, 140), 34, hand, rng)
+    top = 168 + gap
+    rod = outline(box(640, top + 120, 30, 240), hand, rng)
+    scene = read(beam, rod, circle((640, 160), 9, hand, rng)).scene
+    assert [tuple(map(str, joint.bodies)) for joint in scene.joints] == [("b1", "b2")]
