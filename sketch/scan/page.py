@@ -266,8 +266,19 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
         left_out += [f"left out {len(holes)} holes along an edge of the sheet"] if len(holes) else []
     held = found.at_edge & (found.span < (FINGER_MARK if frame is None else HUNG) * size)
     faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
-    keep = (found.strength >= faintest) & (found.span >= 2 * reach) & ~held
+    seen = (found.strength >= faintest) & (found.span >= 2 * reach)
+    keep = seen & ~held
+    if frame is None:
+        left_out += _at_edge(int(np.count_nonzero(seen & held)), int(np.count_nonzero(keep & found.at_edge)))
     return found.without(mask, ~keep), left_out
+
+
+def _at_edge(held: int, kept: int) -> list[str]:
+    """Notes of what is not seen at the edge of the sheet. held, kept: pieces of ink there, left out or not."""
+    notes = [f"left out {held} marks at the edge of the sheet, as of what holds it"] if held else []
+    if kept:
+        notes.append("ink leads to the edge of the sheet: what is drawn along that may be missing")
+    return notes
 
 
 def _drop_frame(mask: Image, found: _Pieces, reach: int) -> Image | None:

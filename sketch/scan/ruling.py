@@ -23,12 +23,18 @@ LONG = 0.3  # of the picture's width: what a stretch of a printed line has at le
 SHORT = 0.03  # of the picture's width: shorter stretches are crossings of other lines
 FEWEST = 5  # printed lines of which such a stretch is seen
 EVEN = 0.12  # of their distance: how far they are from even spacing
+NEAREST = 3  # [pixels] beyond the thickness of a printed line, to either side: its ink is looked for so far at least
 SEEN = 0.35  # of a line's length that has to be ink, where it is only thought to be
+HARDLY = 0.2  # of a line's length that has to be ink, where it has its place among others that are seen
 WHOLE = 0.8  # of the picture's width: a line seen so far is seen whole
 EDGED = 0.99  # of the sheet's width: what a line has to reach at both ends to run from edge to edge
 STRAIGHT = 0.3  # [pixels]: how far a printed line is off a smooth one; a hand's is further
 TREMOR = 25  # [pixels] along a line over which that is told
 DARKER = 1.5  # times as dark as the printed line: ink on it
+STEEPEST = 0.21  # of a family of printed lines on a turned sheet, up or down a pixel
+STEPS = 0.01  # [up or down a pixel] between the slopes that are tried
+COARSE = 4  # [pixels] a side of the squares that those are tried on
+SHARPER = 1.5  # times as much ink runs at a slope than level: the sheet is turned
 
 
 def drop_ruling(mask: Image, darkness: Image, edge: Image | None, photographed: bool) -> tuple[bool, int]:
@@ -38,32 +44,96 @@ def drop_ruling(mask: Image, darkness: Image, edge: Image | None, photographed: 
     near its edge, or None where the sheet fills the picture.  photographed: whether a camera or scanner saw it, so that
     no straight line is a tool's.  Returns whether there was ruling, and how many other lines from edge to edge.
     """
-    ruled, margins = _drop_printed(mask, darkness, edge, photographed)
+    ruled, margins = _drop_turned(mask, darkness, edge, photographed)
     upright, dark = np.ascontiguousarray(mask.T), np.ascontiguousarray(darkness.T)
-    upright_ruled, more = _drop_printed(upright, dark, None if edge is None else edge.T, photographed)
+    upright_ruled, more = _drop_turned(upright, dark, None if edge is None else edge.T, photographed)
     if upright_ruled or more:
         mask[...] = upright.T
     return ruled or upright_ruled, margins + more
 
 
-def _drop_printed(mask: Image, darkness: Image, edge: Image | None, photographed: bool) -> tuple[bool, int]:
-    """Erase what is printed from left to right: as in drop_ruling."""
-    lines, thick = _long_lines(mask)
-    ruled, margins = len(lines) >= FEWEST and _drop_family(lines, thick, mask, darkness), 0
+def _drop_turned(mask: Image, darkness: Image, edge: Image | None, photographed: bool) -> tuple[bool, int]:
+    """Erase what is printed from left to right, at some slope: as in drop_ruling."""
+    slope = _slope(mask)
+    if not slope:
+        return _drop_printed(mask, darkness, edge, photographed)
+    paper = np.zeros_like(mask) if edge is None else edge
+    level, dark, beyond = _levelled(mask, slope), _levelled(darkness, slope), _levelled(paper, slope, 255)
+    found = _drop_printed(level, dark, beyond, photographed, turned=True)
+    if any(found):
+        for there, here in _runs(mask.shape, slope):
+            mask[here] = level[there]
+    return found
+
+
+def _levelled(image: Image, slope: float, off: int = 0) -> Image:
+    """A picture whose columns are moved so that lines of some slope are level.  off: what is beyond its edges."""
+    height, width = image.shape
+    level = np.full((height + round(abs(slope) * (width - 1)), width), off, np.uint8)
+    for there, here in _runs(image.shape, slope):
+        level[there] = image[here]
+    return level
+
+
+def _runs(shape: tuple[int, ...], slope: float) -> list[tuple[tuple[slice, slice], tuple[slice, slice]]]:
+    """The columns that are moved alike to level lines of some slope: where they are on the level picture, and here."""
+    height, width = shape
+    down = -np.round(slope * np.arange(width)).astype(np.intp)
+    down -= down.min()
+    first = np.flatnonzero(np.diff(down, prepend=-1)).tolist()
+    return [
+        ((slice(by, by + height), slice(a, b)), (slice(None), slice(a, b)))
+        for a, b, by in zip(first, [*first[1:], width], down[first].tolist(), strict=True)
+    ]
+
+
+def _slope(mask: Image) -> float:
+    """The slope at which most ink runs along lines, 0 where that is hardly more than level."""
+    import cv2
+
+    height, width = (side // COARSE for side in mask.shape)
+    if min(height, width) < 2:
+        return 0.0
+    small = cv2.resize(
+        mask[: height * COARSE, : width * COARSE] * np.uint8(255),
+        (width, height),
+        interpolation=cv2.INTER_AREA,
+    )
+    y, x = np.nonzero(small)
+    ink = small[y, x].astype(np.float64)
+    slopes = STEPS * np.arange(-round(STEEPEST / STEPS), round(STEEPEST / STEPS) + 1)
+    rows = [np.round(y - slope * x).astype(np.intp) for slope in slopes]
+    sharp = [float((np.diff(np.bincount(row - row.min(), ink)) ** 2).sum()) for row in rows]
+    best = int(np.argmax(sharp))
+    return float(slopes[best]) if sharp[best] > SHARPER * sharp[len(slopes) // 2] else 0.0
+
+
+def _drop_printed(
+    mask: Image, darkness: Image, edge: Image | None, photographed: bool, turned: bool = False
+) -> tuple[bool, int]:
+    """Erase what is printed from left to right: as in drop_ruling.  turned: whether it was levelled."""
+    lines, thick = _long_lines(mask, turned)
+    ruled, margins = len(lines) >= FEWEST and _drop_family(lines, thick, mask, darkness, edge), 0
     for rough in lines if photographed else ():
-        line = _refined(rough, mask, thick)
+        line = _refined(rough, mask, edge, thick, SEEN)
         if line is not None and _is_across(line, mask, edge, thick):
             _erase([_belt(line, mask, darkness, thick)], mask)
             margins += not ruled
     return ruled, margins
 
 
-def _drop_family(lines: list[Line], thick: float, mask: Image, darkness: Image) -> bool:
+def _drop_family(lines: list[Line], thick: float, mask: Image, darkness: Image, edge: Image | None) -> bool:
     """Erase the ruling that some long lines belong to."""
-    family = [_refined(line, mask, thick) for line in _family(lines, mask.shape)]
-    belts = [_belt(line, mask, darkness, thick) for line in family if line is not None]
+    family = _family(lines, mask.shape)
+    found = [_refined(line, mask, edge, thick, SEEN) for line in family]
+    if sum(line is not None for line in found) < FEWEST:
+        return False
+    for k, line in enumerate(family):
+        if found[k] is None:  # its place among the others is known
+            found[k] = _refined(line, mask, edge, thick, HARDLY)
+    belts = [_belt(line, mask, darkness, thick) for line in found if line is not None]
     _erase(belts, mask)
-    return len(belts) >= FEWEST
+    return True
 
 
 def _erase(belts: list[_Belt], mask: Image) -> None:
@@ -100,7 +170,7 @@ def _is_across(line: Line, mask: Image, edge: Image | None, thick: float) -> boo
     return float(np.std(smooth)) < STRAIGHT
 
 
-def _long_lines(mask: Image) -> tuple[list[Line], float]:
+def _long_lines(mask: Image, turned: bool) -> tuple[list[Line], float]:
     """The long, thin, nearly straight and nearly level stretches of ink, and how thick they are [pixels]."""
     import cv2
 
@@ -118,7 +188,8 @@ def _long_lines(mask: Image) -> tuple[list[Line], float]:
     for k in np.flatnonzero(wide >= LONG * width):
         own = slice(start[k], start[k] + area[k])
         thick = area[k] / wide[k]
-        line = np.polyfit(x[own], y[own], 2)
+        # a turned sheet ends before the picture does: continued beyond, a bent line goes astray
+        line = np.polyfit(x[own], y[own], 1 if turned and wide[k] < WHOLE * width else 2)
         if np.std(y[own] - np.polyval(line, x[own])) < 0.5 * thick + 0.5:
             lines.append(line)
             thickness.append(thick)
@@ -157,21 +228,26 @@ def _family(lines: list[Line], shape: tuple[int, ...]) -> list[Line]:
     return [np.polyfit(x, y, 2) for y in whole[inside]]
 
 
-def _refined(line: Line, mask: Image, thick: float) -> Line | None:
-    """Where exactly a line of the family runs; None where there is no ink along it."""
+def _refined(line: Line, mask: Image, edge: Image | None, thick: float, least: float) -> Line | None:
+    """Where exactly a line of the family runs; None where there is not so much ink along it, a share of its
+    length on the sheet."""
     height, width = mask.shape
     x = np.arange(width)
-    for around in (10, 5, 3):
+    for around in (10, 5, NEAREST):
         reach = round(thick) + around
         middle = np.round(np.polyval(line, x)).astype(int)
         inside = (middle >= reach) & (middle < height - reach)
+        if edge is not None:
+            inside[inside] = edge[middle[inside], x[inside]] == 0
         if not inside.any():
             return None
         rows = middle[inside] + np.arange(-reach, reach + 1)[:, None]
         ink = mask[rows, x[inside]] > 0
         count = ink.sum(axis=0)
         alone = (count > 0) & (count <= thick + 1.5)
-        if np.count_nonzero(alone) < SEEN * len(count):
+        if np.count_nonzero(alone) < least * len(count):
+            if around > NEAREST:
+                continue  # what is drawn along it at a slant is no nearer than this for so long
             return None
         y = (rows * ink).sum(axis=0)[alone] / count[alone]
         seen = x[inside][alone]

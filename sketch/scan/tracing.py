@@ -21,6 +21,7 @@ from sketch.scan.fills import FILL, fill_grain, fill_hatching, hollow_fills
 from sketch.scan.grain import smoothed_grain
 from sketch.scan.graph import Graph, build_graph
 from sketch.scan.hidden import going_on
+from sketch.scan.lying import drop_things
 from sketch.scan.overlaps import overlapping
 from sketch.scan.page import Page, drop_specks, ink_mask, read_page
 from sketch.scan.prices import lines
@@ -135,6 +136,8 @@ def _inked(page: Page, scale: float) -> Traced:
     mask, left_out = ink_mask(page, NEARBY)
     skeleton, size = thin(mask)
     distance = distances(mask)
+    if size and page.edge is not None and (things := drop_things(mask, skeleton, distance, page.edge)):
+        left_out.append(f"left out {things} things that lie across the edge of the sheet")
     pen = _pen_width(mask, skeleton, distance) if size else 0.0
     return Traced([], scale, page, mask, skeleton, distance, pen, left_out=left_out)
 

@@ -6,14 +6,19 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.ink import Sketch
+
 Image = NDArray[np.uint8]
 
+HEIGHT, WIDTH = 560, 720
 RING = ((500.0, 300.0), 90.0)
 BOX = np.array([[120.0, 200.0], [330.0, 220.0], [320.0, 380.0], [110.0, 360.0]])
 CROSS = (np.array([[190.0, 260.0], [250.0, 320.0]]), np.array([[250.0, 260.0], [190.0, 320.0]]))
 
 
-def ink(shape: tuple[int, int] = (560, 720), pen: float = 4.0, filled: bool = False) -> NDArray[np.float64]:
+def ink(
+    shape: tuple[int, int] = (HEIGHT, WIDTH), pen: float = 4.0, filled: bool = False
+) -> NDArray[np.float64]:
     """A ring, a box, and a cross in the box: 1 where there is ink, 0 on paper, smooth between."""
     height, width = shape
     image = np.zeros((height * 4, width * 4), np.uint8)  # drawn four times as large, then reduced
@@ -67,3 +72,23 @@ def off_box(points: NDArray[np.float64]) -> NDArray[np.float64]:
         along = np.clip((points - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
         best = np.minimum(best, np.hypot(*(points - a - along[:, None] * (b - a)).T))
     return best
+
+
+def assert_ring_and_box(sketch: Sketch, within: float) -> list[NDArray[np.float64]]:
+    """One closed stroke along the ring and one along the box; returns the others."""
+    strokes = [s.points for s in sketch.strokes]
+    ring = [s for s in strokes if off_ring(s).max() < within]
+    box = [s for s in strokes if off_box(s).max() < within]
+    assert len(ring) == 1
+    assert len(box) == 1
+    for outline in (ring[0], box[0]):
+        assert np.hypot(*(outline[0] - outline[-1])) < within
+    return [s for s in strokes if s is not ring[0] and s is not box[0]]
+
+
+def assert_all(sketch: Sketch, within: float = 1.5) -> None:
+    bars = assert_ring_and_box(sketch, within)
+    assert len(bars) == 2
+    for bar in CROSS:
+        ends = [min(np.hypot(*(s[[0, -1]] - end).T).min() for s in bars) for end in bar]
+        assert max(ends) < 3 * within
