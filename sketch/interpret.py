@@ -25,7 +25,10 @@ PEN = 1 / 320  # of the longer side of the page: the thickness of a bar
 # radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
 JOINS = 0.3
 NAILS = 0.12  # likewise of a pivot to the background: a ball in front of one body is common
-PIN = 0.02  # likewise over the longer side of page or ink: what is larger is no nail, however large what it lies on is
+PIN = 0.02  # likewise over the longer side of the page: what is larger is no nail, however large what it lies on is
+MARGIN = (
+    1.25  # times as long as its ink is a page, at least: one that is cut close to its ink is the same page
+)
 WHEEL = 20.0  # times that a circle with a much smaller one at its centre is likelier a wheel than a pin
 NEAR = 2.5  # radii from a pivot's centre to a body that it misses by a slip of the hand
 AROUND = 5.0  # radii, likewise to one whose ink runs on beyond its outline, into the circle
@@ -57,7 +60,7 @@ def interpret(
     ]
     bodies = Bodies(drawn)
     fixed = {d for r in readings if r.kind == "anchor" if (d := _anchored(r, bodies)[0]) is not None}
-    joints = _pivots(sketch, bodies, fixed, view.pixels_per_metre, PIN * max(longer, wide), notes)
+    joints = _pivots(sketch, bodies, fixed, view.pixels_per_metre, PIN * max(longer, MARGIN * wide), notes)
     drawn = [d for d in drawn if d.reading.solid]
     _number(drawn, joints)
     for reading in readings:

@@ -386,6 +386,16 @@ def test_hard_pairs_of_any_size_and_turned_by_any_angle(name: str, scale: float,
         assert kinds(found) == meant, what
 
 
+@pytest.mark.parametrize("scale", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_page_cut_close_to_its_ink_has_the_same_nails(scale: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    ink = [*outline(box(310, 220, 600, 420), HANDS["neat"], rng), *circle((310, 220), 13, HANDS["neat"], rng)]
+    for width, height in ((1280, 720), (620, 440)):
+        sketch = Sketch([Stroke(scale * s) for s in ink], scale * width, scale * height)
+        assert [j.bodies for j in recognize(sketch).scene.joints] == [("b1", None)]
+
+
 @hands
 def test_balls_in_a_frame_are_not_nailed_to_it(hand, rng) -> None:
     frame = outline(box(640, 380, 950, 560), hand, rng)
