@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from sketch.kernel import depth
 from sketch.pieces import Page, Piece
-from sketch.proposals import Pick, Proposed, Row
+from sketch.proposals import Pick, Proposed, Row, proposing
 from sketch.scoring import Fitted
 from sketch.typing import Array
 
@@ -42,15 +43,16 @@ SIDES = 0.015  # of its length: as far they reach to either side of it
 
 def pointing(
     page: Page, proposed: list[Proposed], told: list[list[float]], likely: list[Pick]
-) -> tuple[list[list[float]], set[int]]:
-    """Gains, with one arrow likelier and the others rarer; and the pieces of likely arrows that mean something else.
+) -> tuple[list[list[float]], set[int], Proposed]:
+    """Gains, with one arrow likelier and the others rarer; the pieces of likely arrows that mean something else; and
+    all that do, as pointers, with what they gain by their ink.
 
     told: the gains of all that is proposed.  likely: which of it the ink makes likely.
     """
     by_ink = proposed[: len(page.pieces)]  # and not said by the caller
     every = [(n, k) for n, p in enumerate(by_ink) for k in p.arrows if told[n][k] > -ONE_ARROW]
     if not every:
-        return told, set()
+        return told, set(), proposing([], [])
     arrows = [proposed[n].candidates[k] for n, k in every]
     chosen = [(proposed[n].candidates[k], proposed[n].rows[k]) for n, k in likely]
     losses = dict(zip(every, _losses(page, arrows, chosen), strict=True))
@@ -68,6 +70,7 @@ def pointing(
 
     free = [pick for pick, loss in losses.items() if loss < math.inf]
     first = likeliest_arrow(proposed, told, free, likely, gain)
+    pointers = [pick for pick, loss in losses.items() if loss == math.inf]
     rarer = list(told)
     for (n, k), loss in losses.items():
         rarer[n] = own = list(told[n]) if rarer[n] is told[n] else rarer[n]
@@ -75,7 +78,11 @@ def pointing(
     if first is not None:
         most = rarer[first[0]][first[1]] + ONE_ARROW - SECOND
         prefer_arrow(proposed, rarer, every, first, most)
-    return rarer, other
+    pointed = proposing(
+        [replace(proposed[n].candidates[k], kind="pointer") for n, k in pointers],
+        [proposed[n].gains[k] - ONE_ARROW for n, k in pointers],
+    )
+    return rarer, other, pointed
 
 
 def likeliest_arrow(

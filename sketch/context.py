@@ -143,6 +143,8 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= ANCHORS * (bodies.under(c, extent) > 0)
             slips = len(c.pieces) * (extent < TWIG * drawn)  # each stroke of a tiny one is
             gains[k] -= SLIP * (slips + bodies.slip(c, extent))
+        elif c.kind == "ellipse":
+            gains[k] -= ANCHORS * (extent < LARGEST * drawn)  # what is so small and no ring is written
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
             gains[k] += NO_BODY * bodies.ground(c, row)

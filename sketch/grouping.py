@@ -27,6 +27,13 @@ ENDS_ON = 0.08  # of a piece's length: as near as its ends are to the ink that t
 LACKS = 0.2  # of what a way of several pieces lacks: likewise
 BENT = 1.4  # of the distance of its ends: an open piece that is shorter encloses nothing
 FINE = 8  # steps from end to end: ways over other ink that are no further apart are one; as in core/lend.c
+AS_WIDE = 1.3  # times the extent of a piece is as far apart as what ends on it with both ends
+# length over extent: of a bar, of a bar with hooks, and of a stroke that is an X by itself
+BAR, HOOKED, X = 1.6, 3.0, 5.0
+BOWED = 0.12  # of its length, what a bar of an X bends
+UNLIKE = 3.0  # times that one bar of an X is as large as the other
+WHOLE, BARBED = 1.3, 2.5  # length over extent: of an arrow in one stroke, of a shaft with one barb
+CORNERED = 0.06  # of its length, what a shaft bends that has a barb
 STRAIGHT = 0.03  # of its length, what a stroke bends that may be one part of a straight line
 ALIKE = 0.2  # tangent of the angle between two parts of such a line, at most
 BESIDE = 0.1  # of its length: as near as another part of such a line is
@@ -62,7 +69,7 @@ def _side_between(page: Page, way: Chain) -> Iterator[tuple[int, Array]]:
     reach = ENDS_ON * length if len(way) == 1 else min(ENDS_ON * length, LACKS * gap)
     ends, known = np.array([a, b]), list[Array]()
     for q in page.reaching(a, b, reach):
-        if q.index in names or 1.3 * q.extent < gap or not page.apart(q.index, names):
+        if q.index in names or AS_WIDE * q.extent < gap or not page.apart(q.index, names):
             continue
         found = lent(page.strokes, q.stroke, q.points, ends, reach, several=len(way) > 1)
         if found is None:
@@ -78,20 +85,20 @@ def _side_between(page: Page, way: Chain) -> Iterator[tuple[int, Array]]:
 def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:
     """A stroke that may be an X by itself, and its pairs with later ones that overlap: of bars, or of a bar
     and one with hooks."""
-    if 1.6 * p.extent < p.length < 5 * p.extent:
+    if BAR * p.extent < p.length < X * p.extent:
         yield (p.index,)
-    if p.length >= 3 * p.extent:
+    if p.length >= HOOKED * p.extent:
         return
     bar, found = _is_bar(p), []
     for q in page.touching(*p.box):
         if (
             q is p
-            or q.length >= 3 * q.extent
+            or q.length >= HOOKED * q.extent
             or not (bar or _is_bar(q))
             or not page.apart(p.index, (q.index,))
         ):
             continue
-        if max(p.extent, q.extent) <= 3 * min(p.extent, q.extent):
+        if max(p.extent, q.extent) <= UNLIKE * min(p.extent, q.extent):
             found.append((abs(math.log(max(p.extent, 1e-9) / max(q.extent, 1e-9))), q.index))
     for _, j in sorted(found)[:MOST_CROSSED]:
         if j > p.index:
@@ -117,19 +124,19 @@ def in_line(page: Page, p: Piece) -> Iterator[Piece]:
 
 
 def _is_bar(p: Piece) -> bool:
-    return p.length < 1.6 * p.extent and p.straight < 0.12
+    return p.length < BAR * p.extent and p.straight < BOWED
 
 
 def shafts(page: Page, p: Piece) -> Iterator[Shaft]:
     """A piece as an arrow's shaft, with others that may be its head."""
-    if p.length > 1.3 * p.extent:  # the whole arrow in one stroke
+    if p.length > WHOLE * p.extent:  # the whole arrow in one stroke
         for k in (3, 4, 5):
             v = p.corners(k)
             yield Shaft((p.index,), (0, 0), _point(v[0]), _point(v[1]))
             yield Shaft((p.index,), (0, 0), _point(v[k]), _point(v[k - 1]))
-    if p.length > 2.5 * p.extent:
+    if p.length > BARBED * p.extent:
         return
-    if p.straight > 0.06:  # the shaft and one barb in one stroke
+    if p.straight > CORNERED:  # the shaft and one barb in one stroke
         v = p.corners(2)
         ends, heads = ((_point(v[0]), _point(v[1])), (_point(v[2]), _point(v[1]))), (1, 1)
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Mapping, Sequence
 from itertools import accumulate
 from typing import NamedTuple
@@ -62,9 +63,9 @@ _heads = ctypes.CFUNCTYPE(None, _int, *[_pointer] * 5, _int, _pointer, *[_double
 _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
     ("ink_beside", _lib)
 )
-_words = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, *[_pointer] * 4, ctypes.c_int64)(
-    ("ink_words", _lib)
-)
+_words = ctypes.CFUNCTYPE(
+    ctypes.c_int64, _pointer, _int, *[_pointer] * 3, _double, _double, _pointer, ctypes.c_int64
+)(("ink_words", _lib))
 _cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
 _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, _pointer)(
     ("ink_off_outline", _lib)
@@ -451,16 +452,18 @@ def touch(one: Array, other: Array, at: Point, reach: float, near: float) -> boo
     return bool(_touch(address(one), len(one), address(other), len(other), *at, reach, near))
 
 
-def words(strokes: Strokes, sizes: Mapping[int, float]) -> list[list[int]]:
-    """Pairs of some strokes that may be in one word, given how large each, or its word, is [pixels] (see
-    core/words.c)."""
+def words(
+    strokes: Strokes, sizes: Mapping[int, float], of_larger: float, of_smaller: float = math.inf
+) -> list[list[int]]:
+    """Pairs of some strokes that may be in one word, given how large each, or its word, is [pixels], and what is
+    between them at most, as shares of the larger and of the smaller (see core/words.c)."""
     which, extents = np.array(list(sizes), dtype=np.int32), np.array(list(sizes.values()), dtype=float)
     boxes = strokes.measure[which, 1:5].copy()
     ink = address(which), len(which), address(boxes), address(extents), address(strokes.samples)
     room = 16 * len(which)
     while True:
         pairs = np.empty((room, 2), dtype=np.int32)
-        count = _words(*ink, address(pairs), room)
+        count = _words(*ink, of_larger, of_smaller, address(pairs), room)
         if count <= room:
             found: list[list[int]] = which[pairs[:count]].tolist()
             return found

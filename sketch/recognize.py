@@ -14,6 +14,7 @@ looks anew at its neighbourhood, and comes to the same scene as one that gets th
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -26,6 +27,7 @@ from sketch.cutting import things_in
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
+from sketch.letters import Letters
 from sketch.merging import Chosen, merged
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.pieces import Page
@@ -39,7 +41,14 @@ from sketch.writing import written
 
 __all__ = ["Reading", "Recognition", "Recognizer", "recognize"]
 
-KINDS = {"ellipse": "polygon", "free": "polygon", "cross": "anchor", "arrow": "gravity"}
+NO_PART = ("letter", "pointer")  # kinds of readings that are no part of the scene
+KINDS = {
+    "ellipse": "polygon",
+    "free": "polygon",
+    "cross": "anchor",
+    "arrow": "gravity",
+    **dict.fromkeys(NO_PART, "unread"),
+}
 LENDING = 3  # times, at most, that readings are chosen anew without the sides that no body lent
 NOT_LENT = 1e3  # nats that these lose
 FORCED = 1e6  # nats that a reading gains by having been said by the caller
@@ -64,7 +73,7 @@ class _Explanation:
     """What explains all the ink best, and what it was chosen from.
 
     Attributes:
-        proposed: by each piece in the order of drawing, then by the caller.
+        proposed: by each piece in the order of drawing, then by the caller, then what is no part of the scene.
         told: the gains of all that was proposed, with what is around it [nats].
         chosen: the best of it, each piece in one at most.
         elsewhere: the pieces of arrows that mean something else than gravity.
@@ -117,6 +126,7 @@ class Recognizer:
         self._canvas = sketch
         self._proposals = Proposals(math.hypot(sketch.width or 0.0, sketch.height or 0.0))
         self._context = Context()
+        self._letters = Letters()
         self._alone = Packing()
         self._together = Packing()
         # of each the gains with all that is around, and what the search makes of these
@@ -191,12 +201,20 @@ class Recognizer:
         proposed = self._proposals.all()
         if forced:
             proposed = _with_forced(self._proposals.page, proposed, forced)
-        likely = self._alone.best([p.alone for p in proposed])
         page = self._proposals.page
+        letters = self._letters.possible(page, proposed)
+        sure = (letter.proposed for letter in letters if not letter.marks)
+        likely = self._alone.best([p.alone for p in (*proposed, *sure)])
+        likely = [pick for pick in likely if pick[0] < len(proposed)]
         told = self._context.told(proposed, likely, page.size, page.drawn)
-        told, elsewhere = pointing(page, proposed, told, likely)
+        told, elsewhere, pointed = pointing(page, proposed, told, likely)
         told = written(page, proposed, told, likely, elsewhere)
+        known = {i: (p.gains, gains) for i, p, gains in zip(page.pieces, proposed, told, strict=False)}
+        aside = [*(letter.proposed for letter in letters if not letter.is_none(known)), pointed]
+        proposed, told = [*proposed, *aside], [*told, *(p.gains for p in aside)]
         told, chosen = self._lending(proposed, told)
+        elsewhere = {i for c in chosen if c.fit.kind == "pointer" for i in c.fit.pieces}
+        chosen = [c for c in chosen if c.fit.kind not in NO_PART]
         return _Explanation(proposed, told, merged(chosen), elsewhere)
 
     def _lending(
@@ -227,10 +245,13 @@ class Recognizer:
         page = self._proposals.page
         self._places = {c.fit: self._places.get(c.fit) or placed(page, c.fit) for c in best.chosen}
         leads = {i: k for k, i in enumerate(page.pieces)}  # each piece proposes what its ink may be,
-        forced = range(len(leads), len(best.proposed))  # and the caller what comes after
+        further = defaultdict[tuple[int, ...], list[int]](list)  # and what comes after, of the same ink
+        for k in range(len(leads), len(best.proposed)):
+            for fit in best.proposed[k].candidates:
+                further[fit.pieces].append(k)
         readings = []
         for c in best.chosen:
-            by = (*map(leads.__getitem__, c.fit.pieces), *forced)
+            by = (*map(leads.__getitem__, c.fit.pieces), *further[c.fit.pieces])
             rivals = _rivals(c, [(best.proposed[k], best.told[k]) for k in by])
             score, others = scored(rivals)
             place = self._places[c.fit]
@@ -323,6 +344,8 @@ def _rivals(chosen: Chosen, proposed: list[tuple[Proposed, list[float]]]) -> lis
 
 def _meaning(fit: Fitted) -> str | int:
     """What a reading says: a mark, a circle, or so many sides; a rectangle is a polygon of four."""
+    if fit.kind in NO_PART:
+        return "unread"
     if fit.kind in ("rectangle", "polygon", "ellipse", "free"):
         return min(len(fit.outline), MANY)
     return fit.kind

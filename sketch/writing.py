@@ -27,9 +27,12 @@ WITHIN = 2 * WRITTEN  # likewise of what is drawn over a body, which else is a m
 # times that it is as large as a letter there, at most: marks are larger than what is written at them
 MARKED = {"circle": 1.7, "cross": 1.25}
 # of the larger stroke: between a letter and the next, at most; a mark is set apart, and of two bars
-NEXT = {"circle": 0.5, "cross": 0.3}
+NEXT = {"circle": 0.5, "cross": 0.35}
+BETWEEN = 1.0  # of the larger stroke: what is between the strokes of a word, at most
 SAME = 0.1  # and between strokes of one
 CLEAR = 0.08  # of a body's narrower half: as far from its outline as what is written in it is, at least
+JOINED = 0.35  # of a bar of an X: as near to its ends are those of what joins them
+SHORT = 0.6  # likewise: what is among them and no longer is a loose side of the X
 SPOKE = 0.05  # of its length, what a spoke bends
 STRAIGHT = 0.9  # of its length, the distance of the ends of a letter's bar, at least
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
@@ -37,7 +40,7 @@ HATCHED = WRITTEN  # nats that a stroke of hatching is no side of an outline
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
 MARK = 0.25  # of a line's length: a mark at the end of a dimension line is as large
 AT_END = 0.05  # of a line's length: a mark at the end of a dimension line is as near to that
-ON = 0.02  # of a line's length: strokes so near to it, but not at its ends, mean something else: hatching, a floor
+ON = 0.1  # of its extent: strokes so near to a line, but not at its ends, mean something else: hatching, a floor
 
 
 def written(
@@ -174,7 +177,7 @@ class _Marks:
             return WITHIN * len(on)
         large = {i for i in near if size < TALL * self._page.pieces[i].extent}.union(halves)
         if c.kind == "cross":  # what is among its strokes joins its bars, and is no letter beside them
-            large = {i for i in large if not self._is_among(c, rows.middles[i])}
+            large = {i for i in large if not self._is_between(c, i)}
         return WITHIN * sum(
             self._is_on(under, i) and not self._is_spoke(c, size, i) and self._is_next(c, size, i)
             for i in large
@@ -222,13 +225,19 @@ class _Marks:
         if not near:
             return False
         ink = self._page.strokes.samples
-        gaps = ink[near, ::2].reshape(-1, 1, 2) - ink[other.stroke, None, ::2]
+        gaps = ink[near].reshape(-1, 1, 2) - ink[other.stroke, None, ::2]
         return bool((gaps**2).sum(axis=2).min() < reach**2)
 
-    def _is_among(self, c: Fitted, at: Point) -> bool:
-        """Whether a point is in the box around a reading's strokes."""
-        x0, y0, x1, y1 = zip(*(self._page.pieces[i].box for i in c.pieces), strict=True)
-        return bool(min(x0) < at[0] < max(x1) and min(y0) < at[1] < max(y1))
+    def _is_between(self, c: Fitted, i: int) -> bool:
+        """Whether a stroke goes from an end of an X's bars to another, or is a short one among them."""
+        p, ends = self._page.pieces[i], c.outline.tolist()
+        long = math.dist(*ends[:2])
+        if p.extent < SHORT * long:
+            x0, y0, x1, y1 = zip(*(self._page.pieces[k].box for k in c.pieces), strict=True)
+            x, y = (p.box[0] + p.box[2]) / 2, (p.box[1] + p.box[3]) / 2
+            return bool(min(x0) < x < max(x1) and min(y0) < y < max(y1))
+        first, last = ({k for k, end in enumerate(ends) if math.dist(end, e) < JOINED * long} for e in p.ends)
+        return bool(first and last and len(first | last) > 1)
 
     def _is_on(self, bodies: Sequence[Fitted], i: int) -> bool:
         """Whether the middle of a stroke is within one of some bodies."""
@@ -269,7 +278,7 @@ def _near(page: Page, largest: float, idle: Set[int]) -> dict[int, list[int]]:
     What is between two words is as wide as the largest of their strokes.
     """
     near: dict[int, list[int]] = {i: [] for i, p in page.pieces.items() if p.extent < largest}
-    for i, j in words(page.strokes, {i: page.pieces[i].extent for i in near}):
+    for i, j in words(page.strokes, {i: page.pieces[i].extent for i in near}, BETWEEN):
         near[i].append(j)
         near[j].append(i)
     tall = dict[int, float]()
@@ -277,7 +286,7 @@ def _near(page: Page, largest: float, idle: Set[int]) -> dict[int, list[int]]:
         if start not in tall:
             word = _joined(near, start)
             tall.update(dict.fromkeys(word, max(page.pieces[i].extent for i in word)))
-    for i, j in words(page.strokes, tall) if len(tall) > 1 else ():
+    for i, j in words(page.strokes, tall, BETWEEN) if len(tall) > 1 else ():
         if j not in near[i]:
             near[i].append(j)
             near[j].append(i)
@@ -362,7 +371,7 @@ def _measured(page: Page, bar: Fitted, idle: Sequence[Piece]) -> set[int]:
     )
     (ax, ay), (ux, uy) = ends[0], (ends[1] - ends[0]) / max(long, 1e-9)
     off = np.array([np.abs((ink[:, 1] - ay) * ux - (ink[:, 0] - ax) * uy).min() for ink in inks])
-    there = np.asarray(at.any(axis=1))
-    if not (at.any(axis=0).all() and (there | (off > ON * long)).all()):
+    there, reach = np.asarray(at.any(axis=1)), ON * np.array([q.extent for q in near])
+    if not (at.any(axis=0).all() and (there | (off > reach)).all()):
         return set()
     return {*bar.pieces, *(q.index for q, end in zip(near, there, strict=True) if end)}

@@ -1,7 +1,6 @@
 /* Which strokes are as near to one another, and as alike in size, as those of a word. */
 #include "fit.h"
 
-static const double BETWEEN = 1.0; /* of the larger one's extent: what is between the strokes of a word, at most */
 static const double UNLIKE =
     6.0;  /* times that strokes of one word are as large as others: a letter's bar, and its stem */
 
@@ -22,7 +21,7 @@ static int comes_near(const double *one, const double *other, double reach) {
  * Out: pairs: (room, 2): numbers of those that may be in one word, in order, as many as there is room for. Returns how many
  * there are. */
 INK_API int64_t ink_words(const int32_t *which, int32_t count, const double *boxes, const double *extents,
-                          const double *samples, int32_t *pairs, int64_t room) {
+                          const double *samples, double of_larger, double of_smaller, int32_t *pairs, int64_t room) {
     int64_t found = 0;
     for (int i = 0; i < count; i++) {
         const double *a = boxes + 4 * i;
@@ -30,7 +29,7 @@ INK_API int64_t ink_words(const int32_t *which, int32_t count, const double *box
             const double *b = boxes + 4 * j;
             int larger = extents[i] > extents[j];
             double large = larger ? extents[i] : extents[j], small = larger ? extents[j] : extents[i];
-            double reach = BETWEEN * large;
+            double reach = of_larger * large < of_smaller * small ? of_larger * large : of_smaller * small;
             if (!(b[0] < a[2] + reach && b[2] > a[0] - reach && b[1] < a[3] + reach && b[3] > a[1] - reach)) continue;
             if (large > UNLIKE * small) continue;
             if (!comes_near(samples + 2 * SAMPLES * which[i], samples + 2 * SAMPLES * which[j], reach)) continue;

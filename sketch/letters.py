@@ -1,0 +1,180 @@
+"""Letters: small strokes, alone or a few that touch, of which nothing more is said than that they were written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sketch.kernel import words
+from sketch.pieces import Page
+from sketch.proposals import MEANT, Proposed, proposing
+from sketch.scoring import PARAMETER, Fitted
+
+__all__ = ["Letter", "Letters"]
+
+LETTER = 4 * PARAMETER  # nats to say which letter it is, where, and how large
+FORMED = 2.0  # nats an observation to say its ink, given that: how its writer forms it
+LIFTED = 15.0  # nats that what is so small is likelier a letter where the pen was lifted
+USUAL = 0.025  # of what is drawn: the extent of a letter beside a machine
+SPREAD = 0.15  # of the logarithm of larger extents,
+LARGEST = 0.1  # up to this one
+NAIL = 0.04  # of what is drawn: the extent of a ring that may be a pin
+HOLDS = (
+    2.5  # times as large as a ring is a letter that it is a part of, at most: what is larger is pinned by it
+)
+SHORT = 0.6  # of the bars of an X: what is no longer, and touches them, is a loose side of it
+TOUCHING = 0.12  # of the smaller stroke: what is between the strokes of one letter
+MOST_STROKES = 4  # of one letter
+NOWHERE = np.zeros((1, 2))  # a letter's outline: none
+
+
+@dataclass(frozen=True, eq=False)
+class Letter:
+    """What may be a letter.
+
+    Attributes:
+        proposed: that reading, and what it gains.
+        marks: readings of its strokes as small rings, or as an X with short ink besides, by the piece that proposed
+            them: where one of them is a mark, there is no letter.
+    """
+
+    proposed: Proposed
+    marks: tuple[tuple[int, int], ...]
+
+    def is_none(self, known: Mapping[int, tuple[list[float], Sequence[float]]]) -> bool:
+        """Whether one of its marks is likelier one than by its ink.
+
+        known: of each piece what its readings gain by themselves, and given what stands around.
+        """
+        return any(known[i][1][k] > known[i][0][k] for i, k in self.marks)
+
+
+class Letters:
+    """The letters that a page may have, kept while the ink there stays."""
+
+    def __init__(self) -> None:
+        self._drawn = 0.0
+        self._alone: dict[Proposed, tuple[int, int]] = {}
+        self._known: dict[tuple[Proposed, ...], Letter | None] = {}
+
+    def possible(self, page: Page, proposed: Sequence[Proposed]) -> list[Letter]:
+        """Each small stroke as a letter, but straight ones and rings, and those that touch as one.
+
+        proposed: what the pieces mean else, in the order of drawing.
+        """
+        if page.drawn != self._drawn:
+            self._drawn, self._known = page.drawn, {}
+        largest = LARGEST * page.drawn
+        of = {i: p for (i, q), p in zip(page.pieces.items(), proposed, strict=False) if q.extent < largest}
+        alone, self._alone = self._alone, {}
+        groups = []
+        for i, p in of.items():
+            there = alone.get(p)
+            self._alone[p] = best, ring = _alone(p, i) if there is None else there
+            if ring >= 0 and page.pieces[i].extent < NAIL * page.drawn:
+                plain = best == ring
+            else:
+                plain = best >= 0 and _is_straight(p.candidates[best])
+            if not plain:
+                groups.append((i,))
+        known, self._known = self._known, {}
+        out = []
+        for group in groups + _touching(page, {i: page.pieces[i].extent for i in of}):
+            key = tuple(map(of.__getitem__, group))
+            letter = known[key] if key in known else self._read(page, of, group)
+            self._known[key] = letter
+            if letter is not None:
+                out.append(letter)
+        return out
+
+    def _read(self, page: Page, of: Mapping[int, Proposed], group: tuple[int, ...]) -> Letter | None:
+        """Some pieces as a letter; None where that saves nothing."""
+        extent, small = _extent(page, group), {i: page.pieces[i].extent for i in group}
+        if extent >= LARGEST * page.drawn:
+            return None
+        crosses, rough = _crosses(of, group, small) if len(group) > 1 else ([], 0.0)
+        gain = _gain(page, group, extent / (USUAL * page.drawn)) + rough
+        if gain <= 0:
+            return None
+        rings = [
+            (i, self._alone[of[i]][1])
+            for i in group
+            if small[i] < NAIL * page.drawn and (len(group) == 1 or extent > HOLDS * small[i])
+        ]
+        marks = [*((i, ring) for i, ring in rings if ring >= 0), *crosses]
+        return Letter(proposing([Fitted("letter", group, 0.0, NOWHERE)], [gain]), tuple(marks))
+
+
+def _alone(proposed: Proposed, index: int) -> tuple[int, int]:
+    """Which of what a piece proposed for its own ink gains the most, and which is a ring; -1 for none."""
+    best, ring = -1, -1
+    gains = proposed.gains
+    for k, c in enumerate(proposed.candidates):
+        if gains[k] > 0 and c.pieces == (index,):
+            if c.kind == "circle" and (ring < 0 or gains[k] > gains[ring]):
+                ring = k
+            if best < 0 or gains[k] > gains[best]:
+                best = k
+    return best, ring
+
+
+def _crosses(
+    of: Mapping[int, Proposed], group: Sequence[int], small: Mapping[int, float]
+) -> tuple[list[tuple[int, int]], float]:
+    """Readings of some pieces as an X that the others are short beside: which piece proposed it, and which it is; and
+    what an X of all leaves to be said of its ink [nats].
+
+    of: what the pieces propose.  small: their extents [pixels].
+    """
+    found, rough, every = [], math.inf, set(group)
+    for i in group:
+        for k, (c, gain) in enumerate(zip(of[i].candidates, of[i].gains, strict=True)):
+            if gain > 0 and c.kind == "cross" and every.issuperset(c.pieces):
+                rest, least = every.difference(c.pieces), min(small[j] for j in c.pieces)
+                if not rest:
+                    rough = min(rough, c.rough)
+                elif all(small[j] < SHORT * least for j in rest):
+                    found.append((i, k))
+    return found, rough if rough < math.inf else 0.0
+
+
+def _is_straight(c: Fitted) -> bool:
+    return c.kind == "bar" and len(c.outline) == 2
+
+
+def _touching(page: Page, small: dict[int, float]) -> list[tuple[int, ...]]:
+    """Strokes that touch, and further ones that touch these, as far as they are few."""
+    near: dict[int, list[int]] = {}
+    for i, j in words(page.strokes, small, TOUCHING, TOUCHING) if len(small) > 1 else ():
+        near.setdefault(i, []).append(j)
+        near.setdefault(j, []).append(i)
+    found, seen = [], set[int]()
+    for start in near:
+        if start in seen:
+            continue
+        group = [start]
+        seen.add(start)
+        for i in group:  # it grows meanwhile
+            new = [j for j in near[i] if j not in seen]
+            seen.update(new)
+            group += new
+        if len(group) <= MOST_STROKES:
+            found.append(tuple(sorted(group)))
+    return found
+
+
+def _extent(page: Page, group: Iterable[int]) -> float:
+    """Of the box around some pieces [pixels]."""
+    x0, y0, x1, y1 = zip(*(page.pieces[i].box for i in group), strict=True)
+    return math.hypot(max(x1) - min(x0), max(y1) - min(y0))
+
+
+def _gain(page: Page, group: tuple[int, ...], size: float) -> float:
+    """Nats that some pieces save as a letter, given its size as a share of the usual one."""
+    its = [page.pieces[i] for i in group]
+    large = max(math.log(size), 0.0) / SPREAD
+    said = LETTER + FORMED * sum(p.observations for p in its) + 0.5 * large**2 - LIFTED * (len(its) > 1)
+    return sum(p.unread for p in its) - said - MEANT

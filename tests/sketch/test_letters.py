@@ -1,0 +1,71 @@
+"""Letters by themselves, and arrows that are no gravity: they are said in fewer nats than outlines of their ink."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pages import box, read
+from test_machines import cart, meaning
+from test_writing import HAND, word
+
+from sketch.ink import Sketch, Stroke
+from sketch.recognize import recognize
+from sketch.synthetic import arrow, circle, cross, line, outline
+
+
+@pytest.mark.parametrize("letter", "ADagkp4")
+@pytest.mark.parametrize("height", [18, 30, 44])
+def test_a_letter_beside_a_machine_is_no_body(letter: str, height: float) -> None:
+    rng = np.random.default_rng(ord(letter))
+    sketch = cart(HAND, rng)
+    first = len(sketch.strokes)
+    ink = word(letter, 980, 120, height, rng)
+    seen = recognize(Sketch([*sketch.strokes, *map(Stroke, ink)]))
+    assert meaning(seen) == meaning(recognize(sketch))
+    left = {s for r in seen.readings if r.kind == "unread" for s in r.strokes}
+    assert left >= set(range(first, first + len(ink)))
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("size", [24, 40])
+def test_small_bodies_are_bodies(seed: int, size: float) -> None:
+    """A crate, a wedge and a ball beside something large."""
+    rng = np.random.default_rng(seed)
+    floor = outline(box(640, 500, 900, 60), HAND, rng)
+    crate = outline(box(300, 400, size, size), HAND, rng)
+    wedge = outline([(500, 400 + size), (500 + size, 400 + size), (500 + size, 400)], HAND, rng)
+    scene = read(floor, crate, wedge, circle((800, 420), size / 2, HAND, rng)).scene
+    assert len(scene.bodies) == 4
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_pair_of_axes_is_no_outline(seed: int) -> None:
+    """Two arrows from one place, with heads as large as a person draws them."""
+    rng = np.random.default_rng(seed)
+    ground = outline(box(640, 600, 900, 60), HAND, rng)
+    down = arrow((1100, 120), (1100, 260), HAND, rng)
+    at, long = np.array([300.0, 300.0]), 90.0
+    axes = []
+    for way in (1, -1j):
+        u = np.array([way.real, way.imag])
+        n, tip = np.array([-u[1], u[0]]), at + long * u
+        axes += line([at, tip], HAND, rng)
+        axes += line([tip - 64 * u + 48 * n, tip, tip - 64 * u - 48 * n], HAND, rng)
+    found = read(ground, down, axes)
+    assert len(found.scene.bodies) == 1
+    assert found.scene.gravity[1] < -9
+    assert {s for r in found.readings if r.kind == "unread" for s in r.strokes} == set(
+        range(len(found.sketch.strokes) - len(axes), len(found.sketch.strokes))
+    )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_h_in_a_body_is_no_anchor(seed: int) -> None:
+    """Its bar crosses one of its stems."""
+    rng = np.random.default_rng(seed)
+    frame = [*outline(box(500, 400, 260, 160), HAND, rng), *outline(box(640, 600, 900, 60), HAND, rng)]
+    stems = [line([(x, 391), (x, 419)], HAND, rng) for x in (492, 510)]
+    bar = line([(486, 404), (512, 406)], HAND, rng)
+    assert [b.anchored for b in read(frame, *stems, bar).scene.bodies] == [False, False]
+    small = cross((500, 405), 40, HAND, rng)
+    assert [b.anchored for b in read(frame, small).scene.bodies] == [True, False]
