@@ -22,9 +22,9 @@ USUAL = 0.025  # of what is drawn: the extent of a letter beside a machine
 SPREAD = 0.15  # of the logarithm of larger extents,
 LARGEST = 0.1  # up to this one
 NAIL = 0.04  # of what is drawn: the extent of a ring that may be a pin
-HOLDS = (
-    2.5  # times as large as a ring is a letter that it is a part of, at most: what is larger is pinned by it
-)
+# times as large as a ring is a letter that it is a part of, at most, as a "d" is: what is larger is pinned by it
+HOLDS = 2.5
+SURER = 20.0  # nats that a letter gains more than an X of the same ink, at most, by what that leaves to be said
 SHORT = 0.6  # of the bars of an X: what is no longer, and touches them, is a loose side of it
 TOUCHING = 0.12  # of the smaller stroke: what is between the strokes of one letter
 MOST_STROKES = 4  # of one letter
@@ -95,8 +95,9 @@ class Letters:
         extent, small = _extent(page, group), {i: page.pieces[i].extent for i in group}
         if extent >= LARGEST * page.drawn:
             return None
-        crosses, rough = _crosses(of, group, small) if len(group) > 1 else ([], 0.0)
-        gain = _gain(page, group, extent / (USUAL * page.drawn)) + rough
+        crosses, whole = _crosses(of, group, small) if len(group) > 1 else ([], [])
+        gain = _gain(page, group, extent / (USUAL * page.drawn))
+        gain = max(gain, *(min(gain + rough, its + SURER) for its, rough in whole), -math.inf)
         if gain <= 0:
             return None
         rings = [
@@ -123,22 +124,22 @@ def _alone(proposed: Proposed, index: int) -> tuple[int, int]:
 
 def _crosses(
     of: Mapping[int, Proposed], group: Sequence[int], small: Mapping[int, float]
-) -> tuple[list[tuple[int, int]], float]:
+) -> tuple[list[tuple[int, int]], list[tuple[float, float]]]:
     """Readings of some pieces as an X that the others are short beside: which piece proposed it, and which it is; and
-    what an X of all leaves to be said of its ink [nats].
+    of each X of all pieces what it gains, and what it leaves to be said of its ink [nats].
 
     of: what the pieces propose.  small: their extents [pixels].
     """
-    found, rough, every = [], math.inf, set(group)
+    found, whole, every = [], [], set(group)
     for i in group:
         for k, (c, gain) in enumerate(zip(of[i].candidates, of[i].gains, strict=True)):
             if gain > 0 and c.kind == "cross" and every.issuperset(c.pieces):
                 rest, least = every.difference(c.pieces), min(small[j] for j in c.pieces)
                 if not rest:
-                    rough = min(rough, c.rough)
+                    whole.append((gain, c.rough))
                 elif all(small[j] < SHORT * least for j in rest):
                     found.append((i, k))
-    return found, rough if rough < math.inf else 0.0
+    return found, whole
 
 
 def _is_straight(c: Fitted) -> bool:
