@@ -220,8 +220,9 @@ class _Bodies:
     def __init__(self, bodies: Around, held: dict[Fitted, int]) -> None:
         """held: of open lines, how many of their ends small rings hold."""
         self.held = held
-        # likewise of each stroke that may be one
-        self.held_of = {line.pieces[0]: held.get(line, 0) for line in bodies if line.kind == "bar"}
+        # likewise of the ink that each is most of; on a picture a line that others cross may be most of none
+        bars = [line for line in bodies if line.kind == "bar"]
+        self.held_of = {line.pieces[0]: held.get(line, 0) for line in bars if line.pieces}
         self.closed = [(body, row) for body, row in bodies.items() if body.closed]
         self.lines = [(c, row[4]) for c, row in bodies.items() if c.kind == "bar"]
         self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]

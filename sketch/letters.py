@@ -24,7 +24,7 @@ LARGEST = 0.1  # up to this one
 NAIL = 0.04  # of what is drawn: the extent of a ring that may be a pin
 # times as large as a ring is a letter that it is a part of, at most, as a "d" is: what is larger is pinned by it
 HOLDS = 2.5
-SURER = 20.0  # nats that a letter gains more than an X of the same ink, at most, by what that leaves to be said
+SURER = 20.0  # nats that a letter gains beyond an X of its ink, at most, for what that leaves to be said
 SHORT = 0.6  # of the bars of an X: what is no longer, and touches them, is a loose side of it
 TOUCHING = 0.12  # of the smaller stroke: what is between the strokes of one letter
 MOST_STROKES = 4  # of one letter

@@ -88,3 +88,11 @@ def test_two_sides_are_closed_to_an_outline_where_rings_are_between_their_ends()
     (outline,) = closed(found)
     x, y = outline.min(axis=0), outline.max(axis=0)
     assert np.allclose([x, y], [(185, top), (215, low)], atol=3)
+
+
+def test_lines_across_a_rope_that_a_ring_holds_are_lines() -> None:
+    """The rope goes on beyond the picture, and none of its stretches between them is much of it."""
+    rope: Line = [(60, 200), (740, 204)]
+    across: list[Line] = [[(x, 150.0), (x + 3.0, 250.0)] for x in np.linspace(110, 690, 14).tolist()]
+    scene = read([rope, *across, circle(60, 200, 9)], 3.0)
+    assert kinds(scene).count("rectangle") > 7
