@@ -202,7 +202,8 @@ class Recognizer:
         if forced:
             proposed = _with_forced(self._proposals.page, proposed, forced)
         page = self._proposals.page
-        letters = self._letters.possible(page, proposed)
+        # the strokes of a picture were chosen by what they mean else: pieces of a mark, not of a word
+        letters = self._letters.possible(page, proposed) if self._canvas.picture is None else []
         sure = (letter.proposed for letter in letters if not letter.marks)
         likely = self._alone.best([p.alone for p in (*proposed, *sure)])
         likely = [pick for pick in likely if pick[0] < len(proposed)]
