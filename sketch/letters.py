@@ -19,12 +19,12 @@ LETTER = 4 * PARAMETER  # nats to say which letter it is, where, and how large
 FORMED = 2.0  # nats an observation to say its ink, given that: how its writer forms it
 LIFTED = 15.0  # nats that what is so small is likelier a letter where the pen was lifted
 USUAL = 0.025  # of what is drawn: the extent of a letter beside a machine
-SPREAD = 0.15  # of the logarithm of larger extents,
-LARGEST = 0.1  # up to this one
+SPREAD = 0.15  # of the logarithm of a letter's extent, where that is larger than usual
+LARGEST = 0.1  # of what is drawn: no letter is of a larger extent
 NAIL = 0.04  # of what is drawn: the extent of a ring that may be a pin
 # times as large as a ring is a letter that it is a part of, at most, as a "d" is: what is larger is pinned by it
 HOLDS = 2.5
-SURER = 20.0  # nats that a letter gains beyond an X of its ink, at most, for what that leaves to be said
+SURER = 10.0  # nats, at most, that a letter gains beyond an X of its ink: a body under that says more for it
 SHORT = 0.6  # of the bars of an X: what is no longer, and touches them, is a loose side of it
 TOUCHING = 0.12  # of the smaller stroke: what is between the strokes of one letter
 MOST_STROKES = 4  # of one letter
@@ -97,7 +97,7 @@ class Letters:
             return None
         crosses, whole = _crosses(of, group, small) if len(group) > 1 else ([], [])
         gain = _gain(page, group, extent / (USUAL * page.drawn))
-        gain = max(gain, *(min(gain + rough, its + SURER) for its, rough in whole), -math.inf)
+        gain = max([gain, *(min(gain + rough, its + SURER) for its, rough in whole)])
         if gain <= 0:
             return None
         rings = [

@@ -37,10 +37,10 @@ def is_on_line(middle: Sequence[float], extent: float, line: Array, long: float)
         return False
     points = line.tolist()
     gap = min(math.dist(middle, points[0]), math.dist(middle, points[-1]))
-    if (
-        gap < REACH * extent or gap > long + extent
-    ):  # no point of the line is further from its ends than it is long
-        return gap < REACH * extent
+    if gap < REACH * extent:
+        return True
+    if gap > long + extent:  # no point of the line is further from its ends than it is long
+        return False
     return any(_distance(middle, a, b) < THROUGH * extent for a, b in pairwise(points))
 
 

@@ -12,15 +12,14 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import pieces
 from sketch.scan.quantiles import median
+from sketch.typing import Image
 
 __all__ = ["drop_things"]
 
-Image = NDArray[Any]  # uint8
-
 THICKER = 1.7  # times as thick as the lines elsewhere on the sheet
 LONG = 3.0  # times as long as thick: what is shorter may be a blot or filled
-FULL = 0.5  # of the straight box around it: what is seen of a thing that shines covers so much,
-BROAD = 2.5  # lines' thicknesses, at least, is how wide that box is
+FULL = 0.5  # of the straight box around it: what is seen of a thing that shines covers so much
+BROAD = 2.5  # lines' thicknesses, at least: how wide the box around such a thing is
 
 
 def drop_things(mask: Image, skeleton: Image, distance: NDArray[Any], edge: Image) -> int:
