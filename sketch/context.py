@@ -7,17 +7,17 @@ import math
 
 import numpy as np
 
-from sketch.kernel import beside, depth
+from sketch.kernel import beside, depth, gap
 from sketch.pins import PINNED, REACH, is_over
 from sketch.proposals import Pick, Proposed, Row
 from sketch.scoring import Fitted
-from sketch.typing import Array
+from sketch.typing import Point
 from sketch.writing import LARGEST, WITHIN, WRITTEN
 
 __all__ = ["Context"]
 
 Around = dict[Fitted, Row]  # bodies and marks, each with where it is
-Gaps = dict[tuple[Fitted, Fitted], tuple[float, Array]]  # of open lines: how wide [pixels], and where
+Gaps = dict[tuple[Fitted, Fitted], tuple[float, Point]]  # of open lines: how wide [pixels], and where
 
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
@@ -33,7 +33,6 @@ TAP = 0.1  # of a bar's extent: what is smaller beside it is no stroke of a lett
 LARGE = 0.22  # of the page: a larger X is two rods that cross
 ROUGH = 20.0  # nats that a small polygon in several strokes leaves to be said about its ink, and is a letter by itself
 SCRAWLED = 70.0  # likewise an X, what its strokes have besides its bars among it
-DENSE = 64  # points of an open line that are compared with others, or so
 TWIG = 0.04  # of what is drawn: an open line, or an arrow, that is shorter is a slip too
 DOT = 0.012  # of what is drawn: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
@@ -193,25 +192,12 @@ def _letters(proposed: list[Proposed], likely: list[Pick], largest: float, known
             if left > x1 + reach or top > y1 + reach or bottom < y0 - reach:
                 continue
             pair = c, other
-            gap, at = now[pair] = known.get(pair) or _closest(c.outline, other.outline)
-            if gap <= reach and not any(math.dist(pin, at) < 2 * reach for pin in pins):
+            apart, at = now[pair] = known.get(pair) or gap(c.outline, other.outline)
+            if apart <= reach and not any(math.dist(pin, at) < 2 * reach for pin in pins):
                 found.update(readings[c.pieces], readings[other.pieces])
     known.clear()
     known.update(now)
     return sorted(found)
-
-
-def _closest(a: Array, b: Array) -> tuple[float, Array]:
-    """How near two open lines come to each other [pixels], and where on the first."""
-    dense, other = _dense(a), _dense(b)
-    gap = np.hypot(dense[:, None, 0] - other[:, 0], dense[:, None, 1] - other[:, 1])
-    nearest = gap.min(axis=1)
-    return float(nearest.min()), dense[int(nearest.argmin())]
-
-
-def _dense(line: Array) -> Array:
-    t = np.linspace(0, 1, max(2, min(16, DENSE // (len(line) - 1))))[:, None, None]
-    return np.asarray((line[:-1] + t * (line[1:] - line[:-1])).reshape(-1, 2))
 
 
 class _Bodies:
@@ -290,7 +276,7 @@ class _Bodies:
                 continue
             (x, y), reach = mark.middle, ON_LINE * extent
             if x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach:
-                off = np.hypot(*(_dense(line.outline) - (x, y)).T).min()
+                off, _ = gap(np.array([(x, y), (x, y)]), line.outline)
                 if off < reach and not self.under(mark, extent):
                     return True
         return False

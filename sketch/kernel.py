@@ -29,6 +29,7 @@ __all__ = [
     "depth",
     "fit_arrows",
     "fit_closed",
+    "gap",
     "heads",
     "is_simple",
     "joined",
@@ -81,6 +82,7 @@ _lend = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, *[_pointer] * 2, _double, 
 )
 _ring = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer, _pointer)(("ink_ring", _lib))
 _touch = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _int, *[_double] * 4)(("ink_touch", _lib))
+_gap = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int, _pointer)(("ink_gap", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 
 
@@ -445,6 +447,13 @@ def is_simple(outline: Array) -> bool:
 def depth(x: float, y: float, outline: Array) -> float:
     """Distance of a point from a closed outline, (n, 2) [pixels]; negative inside."""
     return float(_depth(x, y, address(outline), len(outline)))
+
+
+def gap(one: Array, other: Array) -> tuple[float, Point]:
+    """How near two open lines, (n, 2), come to each other [pixels], and a place on one of them where they do."""
+    at, one, other = np.empty(2), np.ascontiguousarray(one), np.ascontiguousarray(other)
+    wide = float(_gap(address(one), len(one), address(other), len(other), address(at)))
+    return wide, (float(at[0]), float(at[1]))
 
 
 def touch(one: Array, other: Array, at: Point, reach: float, near: float) -> bool:

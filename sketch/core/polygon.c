@@ -1,4 +1,4 @@
-/* Questions about closed outlines. */
+/* Questions about outlines, closed ones and open ones. */
 #include "fit.h"
 
 #include <math.h>
@@ -51,6 +51,35 @@ INK_API double ink_depth(double x, double y, const double *outline, int32_t n) {
         if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1])) within = !within;
     }
     return within ? -sqrt(best) : sqrt(best);
+}
+
+/* Keep a point where it is nearer to the side from a to b than `best`, squared. */
+static void keep_nearer(const double *p, const double *a, const double *b, double *best, double at[2]) {
+    const double off = segment_distance2(p[0], p[1], a, b);
+    if (off >= *best) return;
+    *best = off;
+    at[0] = p[0], at[1] = p[1];
+}
+
+/* How near two open lines, (n, 2) and (m, 2), come to each other [pixels].  Out: at: a place on one of them where they do. */
+INK_API double ink_gap(const double *one, int32_t n, const double *other, int32_t m, double at[2]) {
+    double best = INFINITY; /* squared */
+    for (int i = 0; i + 1 < n; i++)
+        for (int j = 0; j + 1 < m; j++) {
+            const double *a = one + 2 * i, *b = a + 2, *c = other + 2 * j, *d = c + 2;
+            const double from = turn(c, d, a), to = turn(c, d, b);
+            if (from * to < 0 && turn(a, b, c) * turn(a, b, d) < 0) {
+                const double t = from / (from - to);
+                at[0] = a[0] + t * (b[0] - a[0]);
+                at[1] = a[1] + t * (b[1] - a[1]);
+                return 0;
+            }
+            keep_nearer(a, c, d, &best, at);
+            keep_nearer(b, c, d, &best, at);
+            keep_nearer(c, a, b, &best, at);
+            keep_nearer(d, a, b, &best, at);
+        }
+    return sqrt(best);
 }
 
 enum { STEPS = 64 }; /* along a side, to look for where another outline is near */

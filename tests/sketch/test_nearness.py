@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from pages import measured, page
 
-from sketch.kernel import along, beside, course_around, fit_closed, lent, measure, off_outline
+from sketch.kernel import along, beside, course_around, fit_closed, gap, lent, measure, off_outline
 from sketch.loose import LooseEnds
 
 Array = NDArray[np.float64]
@@ -231,3 +231,23 @@ def test_what_goes_around_lends_the_shorter_way_and_no_detour() -> None:
     assert side is not None
     assert side[:, 0].min() > 60
     assert lending(circle, [(100, 0), (-98, 5)]) is None  # half of it is more than half as long again
+
+
+def test_the_gap_between_open_lines_is_as_of_their_points() -> None:
+    def dense(line: Array) -> Array:
+        t = np.linspace(0, 1, 200)[:, None, None]
+        return np.asarray((line[:-1] + t * np.diff(line, axis=0)).reshape(-1, 2))
+
+    crossing = 0
+    lines = [line[: 2 + n % 4] for n, line in enumerate(scattered(9, 30))]
+    for one, other in itertools.combinations(lines, 2):
+        wide, at = gap(one, other)
+        pairs = np.hypot(*(dense(one)[:, None] - dense(other)[None]).transpose(2, 0, 1))
+        step = max(np.hypot(*np.diff(line, axis=0).T).max() for line in (one, other)) / 199
+        assert wide - 1e-9 <= pairs.min() <= wide + step
+        assert max(np.hypot(*(dense(line) - at).T).min() for line in (one, other)) <= wide + step
+        crossing += wide == 0
+    assert 5 < crossing < 400
+    # along one line, and of a single place
+    assert gap(np.array([[0.0, 0], [10, 0]]), np.array([[14.0, 0], [20, 0]])) == (4, (10, 0))
+    assert gap(np.array([[3.0, 4], [3, 4]]), np.array([[0.0, 0], [10, 0]]))[0] == 4
