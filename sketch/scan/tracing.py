@@ -12,27 +12,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import Chains, distances, smoothed, thin, trace
-from sketch.scan.broken import is_broken
-from sketch.scan.corners import begin_at_corner, sharpen_corners
-from sketch.scan.crossed import crossed
-from sketch.scan.faces import standing
-from sketch.scan.faint import drop_faint_marks
-from sketch.scan.fills import FILL, fill_grain, fill_hatching, hollow_fills
-from sketch.scan.grain import smoothed_grain
-from sketch.scan.graph import Graph, build_graph
-from sketch.scan.hidden import going_on
-from sketch.scan.lying import drop_things
-from sketch.scan.overlaps import overlapping
-from sketch.scan.page import Page, drop_specks, ink_mask, read_page
-from sketch.scan.prices import lines
+from sketch.scan.paper.broken import is_broken
+from sketch.scan.paper.faint import drop_faint_marks
+from sketch.scan.paper.fills import FILL, fill_grain, fill_hatching, hollow_fills
+from sketch.scan.paper.grain import smoothed_grain
+from sketch.scan.paper.lying import drop_things
+from sketch.scan.paper.page import Page, drop_specks, ink_mask, read_page
 from sketch.scan.quantiles import percentile
-from sketch.scan.ridge import centre_on_ink
-from sketch.scan.rings import find_rings, take_rings
-from sketch.scan.settle import settle
-from sketch.scan.sheet import Sheet, bridged
-from sketch.scan.stretches import Stretches
-from sketch.scan.tails import with_tails
-from sketch.scan.ways import Way, Ways
+from sketch.scan.skeleton.corners import begin_at_corner, sharpen_corners
+from sketch.scan.skeleton.graph import Graph, build_graph
+from sketch.scan.skeleton.ridge import centre_on_ink
+from sketch.scan.skeleton.stretches import Stretches
+from sketch.scan.strokes.crossed import crossed
+from sketch.scan.strokes.faces import standing
+from sketch.scan.strokes.hidden import going_on
+from sketch.scan.strokes.overlaps import overlapping
+from sketch.scan.strokes.prices import lines
+from sketch.scan.strokes.rings import find_rings, take_rings
+from sketch.scan.strokes.settle import settle
+from sketch.scan.strokes.subdivision import Subdivision, bridged
+from sketch.scan.strokes.tails import with_tails
+from sketch.scan.strokes.ways import Way, Ways
 from sketch.typing import Points
 
 __all__ = ["Traced", "trace_picture"]
@@ -176,11 +176,11 @@ def _strokes(seen: Traced) -> list[Points]:
         return _points(likeliest)
     others = [_drawn(way, seen) for way in ways.others()]
     others += [_drawn(way, seen) for way in _in_tangles(rings.tangles, likeliest + others, pen)]
-    sheets = [Sheet(edges, rings.round, pen) for edges in (drawn.edges, bridged(drawn, pen))]
+    planes = [Subdivision(edges, rings.round, pen) for edges in (drawn.edges, bridged(drawn, pen))]
     stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
-    others += [_drawn(way, seen) for way in standing(sheets, stretches)]
+    others += [_drawn(way, seen) for way in standing(planes, stretches)]
     others += with_tails(likeliest + others, pen * seen.scale)
-    overlaps = [_drawn(way, seen) for way in overlapping(sheets[1], rings.round, stretches)]
+    overlaps = [_drawn(way, seen) for way in overlapping(planes[1], rings.round, stretches)]
     others += [_drawn(way, seen) for way in going_on(plain, distance, pen)]
     others += [_drawn(way, seen) for way in crossed(drawn, plain, distance, pen)]
     if not others and not overlaps:

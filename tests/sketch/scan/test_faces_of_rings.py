@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import Edge
-from sketch.scan.sheet import Sheet
+from sketch.scan.skeleton.graph import Edge
+from sketch.scan.strokes.subdivision import Subdivision
 
 Points = NDArray[np.float64]
 
@@ -28,9 +28,9 @@ def test_a_ring_around_a_ring_leaves_no_line_without_a_face() -> None:
             Edge(way(-up[k], -up[k + 1]), (2 * k + 1, 2 * k + 3)),
         ]
     edges.append(Edge(way(up[2], -up[2]), (4, 5)))
-    sheet = Sheet(edges, [rings[2], rings[1]], pen=3.0)
-    assert set(sheet.face.values()) - {-1} == set(sheet.faces)
-    total = sum(face.area for face in sheet.faces.values())
+    plane = Subdivision(edges, [rings[2], rings[1]], pen=3.0)
+    assert set(plane.face.values()) - {-1} == set(plane.faces)
+    total = sum(face.area for face in plane.faces.values())
     assert np.isclose(total, np.pi * 100**2, rtol=0.01)
 
 

@@ -26,7 +26,7 @@ from sketch.scan.binding import (
     thin,
     turns,
 )
-from sketch.scan.fills import fill_grain
+from sketch.scan.paper.fills import fill_grain
 from sketch.scoring import misfit
 
 

@@ -14,14 +14,14 @@ from sim.scene import Polygon, Rectangle, Scene
 from sketch.recognize import recognize
 from sketch.scan import read_picture
 from sketch.scan.binding import thin, trace
-from sketch.scan.faces import standing
-from sketch.scan.graph import Graph, build_graph
-from sketch.scan.outlines import ends_cost
-from sketch.scan.overlaps import overlapping
-from sketch.scan.rings import find_rings
-from sketch.scan.sheet import Sheet, bridged
-from sketch.scan.stretches import Stretches
-from sketch.scan.ways import Way
+from sketch.scan.skeleton.graph import Graph, build_graph
+from sketch.scan.skeleton.stretches import Stretches
+from sketch.scan.strokes.closing import ends_cost
+from sketch.scan.strokes.faces import standing
+from sketch.scan.strokes.overlaps import overlapping
+from sketch.scan.strokes.rings import find_rings
+from sketch.scan.strokes.subdivision import Subdivision, bridged
+from sketch.scan.strokes.ways import Way
 
 Points = NDArray[np.float64]
 
@@ -71,8 +71,8 @@ def looked_at(lines: list[Points]) -> tuple[Graph, list[Points]]:
 
 
 def offered(graph: Graph, rings: list[Points]) -> list[Way]:
-    sheet = Sheet(bridged(graph, PEN), rings, PEN)
-    return overlapping(sheet, rings, ink_of(graph))
+    plane = Subdivision(bridged(graph, PEN), rings, PEN)
+    return overlapping(plane, rings, ink_of(graph))
 
 
 def ink_of(graph: Graph) -> Stretches:
@@ -115,7 +115,7 @@ def test_overlapping_outlines_are_those_drawn_and_share_their_ink_out(
 def test_of_more_unions_than_are_looked_at_the_likeliest_are(monkeypatch: pytest.MonkeyPatch) -> None:
     graph, rings = looked_at(chain(ROW))
     every = [way.points for way in offered(graph, rings)]
-    monkeypatch.setattr("sketch.scan.overlaps.MOST_BODIES", 12)
+    monkeypatch.setattr("sketch.scan.strokes.overlaps.MOST_BODIES", 12)
     few = [way.points for way in offered(graph, rings)]
     assert few
     assert all(any(np.array_equal(points, other) for other in every) for points in few)
@@ -139,9 +139,9 @@ def test_a_box_that_shares_its_base_is_offered_even_with_a_gap(gap: float) -> No
     box = np.array([(200.0, 300), (200, 220), (290 - gap, 220), (290, 220 + gap), (380, 220), (380, 300)])
     lines = [BASE, box[:3], np.concatenate([[(290.0, 220)], box[4:]])]
     graph, _ = looked_at(lines)
-    sheets = [Sheet(edges, [], PEN) for edges in (bridged(graph, PEN), graph.edges)]
+    planes = [Subdivision(edges, [], PEN) for edges in (bridged(graph, PEN), graph.edges)]
     boxes = [
-        np.concatenate([w.points.min(axis=0), w.points.max(axis=0)]) for w in standing(sheets, ink_of(graph))
+        np.concatenate([w.points.min(axis=0), w.points.max(axis=0)]) for w in standing(planes, ink_of(graph))
     ]
     for outline in (box, BASE):
         wanted = np.concatenate([outline.min(axis=0), outline.max(axis=0)])
@@ -154,7 +154,7 @@ def test_a_face_is_a_body_where_its_sides_end_at_a_base_but_not_where_they_cross
 ) -> None:
     sides = np.array([(200.0, low), (200, 220), (380, 220), (380, low)])
     graph, _ = looked_at([BASE, sides])
-    found = standing([Sheet(graph.edges, [], PEN)], ink_of(graph))
+    found = standing([Subdivision(graph.edges, [], PEN)], ink_of(graph))
     assert any(abs(way.points[:, 1].min() - 220) < PEN for way in found) == offered
 
 
@@ -163,7 +163,7 @@ def test_a_base_that_is_lent_is_not_cut_short_but_where_a_side_crosses_it(low: f
     sides = np.array([(200.0, low), (200, 220), (380, 220), (380, 300)])
     graph, _ = looked_at([BASE, sides])
     (base,) = (k for k, edge in enumerate(graph.edges) if 170 < edge.length < 190)
-    found = standing([Sheet(graph.edges, [], PEN)], ink_of(graph))
+    found = standing([Subdivision(graph.edges, [], PEN)], ink_of(graph))
     box = {base in way.ink: way.strain for way in found if way.points[:, 1].max() < 310}
     assert box[False] == crossings * ends_cost(2)
     assert box[True] == crossings * ends_cost(2) + (2 - crossings) * ends_cost(1)

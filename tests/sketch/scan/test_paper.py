@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sketch import load_sketch, recognize
-from sketch.scan.page import ink_mask, read_page
+from sketch.scan.paper.page import ink_mask, read_page
 from tests.benchmarks.drawings import Drawing, differences
 from tests.benchmarks.mechanisms import draw
 from tests.sketch.scan.paper import PAPERS, photographed

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from test_tangles import Line, circle, inked, kinds, read
 
 from sketch.scan.binding import thin, trace
-from sketch.scan.graph import build_graph
-from sketch.scan.rings import find_rings
-from sketch.scan.ways import Ways
+from sketch.scan.skeleton.graph import build_graph
+from sketch.scan.strokes.rings import find_rings
+from sketch.scan.strokes.ways import Ways
 
 
 def rings(lines: list[Line], pen: float) -> list[tuple[NDArray[np.float64], float]]:

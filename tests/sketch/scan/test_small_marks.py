@@ -8,12 +8,12 @@ import pytest
 from test_tangles import BOX, circle, inked, kinds, read
 
 from sketch.scan.binding import distances, thin, trace
-from sketch.scan.corners import sharpen_corners
-from sketch.scan.faint import drop_faint_marks
-from sketch.scan.graph import Graph, build_graph
-from sketch.scan.hidden import going_on
-from sketch.scan.rings import find_rings
-from sketch.scan.ways import Way
+from sketch.scan.paper.faint import drop_faint_marks
+from sketch.scan.skeleton.corners import sharpen_corners
+from sketch.scan.skeleton.graph import Graph, build_graph
+from sketch.scan.strokes.hidden import going_on
+from sketch.scan.strokes.rings import find_rings
+from sketch.scan.strokes.ways import Way
 
 Line = list[tuple[float, float]]
 

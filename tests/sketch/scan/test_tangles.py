@@ -14,8 +14,8 @@ from sim.scene import Polygon, Scene
 from sketch.recognize import recognize
 from sketch.scan import read_picture
 from sketch.scan.binding import thin, trace
-from sketch.scan.graph import build_graph
-from sketch.scan.ways import Ways
+from sketch.scan.skeleton.graph import build_graph
+from sketch.scan.strokes.ways import Ways
 
 Line = list[tuple[float, float]]
 PENS = [2.5, 4.0, 5.5]

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sketch.scan.binding import belt, crests, distances, pieces, thin, trace
-from sketch.scan.corners import sharpen_corners
-from sketch.scan.graph import build_graph
-from sketch.scan.ways import Ways
+from sketch.scan.skeleton.corners import sharpen_corners
+from sketch.scan.skeleton.graph import build_graph
+from sketch.scan.strokes.ways import Ways
 
 PEN = 5
 

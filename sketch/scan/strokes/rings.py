@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import belt, distances
-from sketch.scan.fills import holes
-from sketch.scan.graph import Edge, Graph, Ink
-from sketch.scan.ways import Way
+from sketch.scan.paper.fills import holes
+from sketch.scan.skeleton.graph import Edge, Graph, Ink
+from sketch.scan.strokes.ways import Way
 from sketch.typing import Box, Points
 
 __all__ = ["find_rings", "take_rings"]

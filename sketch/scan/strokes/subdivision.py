@@ -16,11 +16,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from sketch.scan.graph import RING, SIGHT, Edge, Graph
-from sketch.scan.outlines import SMOOTH, ends_cost
+from sketch.scan.skeleton.graph import RING, SIGHT, Edge, Graph
+from sketch.scan.strokes.closing import SMOOTH, ends_cost
 from sketch.typing import Points
 
-__all__ = ["Face", "Outline", "Sheet", "bridged"]
+__all__ = ["Face", "Outline", "Subdivision", "bridged"]
 
 SLIVER = 1.2  # pen widths: the mean width of a face between two lines that are drawn along each other
 GAP = 3.0  # pen widths: how far before other ink a line may end that was drawn up to it
@@ -72,7 +72,7 @@ class Outline:
         return sum(ends_cost(len(edges)) for edges in self.cut if not edges <= lent)
 
 
-class Sheet:
+class Subdivision:
     """The faces that a graph cuts the paper into.  A half-edge 2e goes along edge e, and 2e + 1 back.
 
     Attributes:

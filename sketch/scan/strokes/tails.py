@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from sketch.scan.binding import course_length
-from sketch.scan.ways import Way
+from sketch.scan.strokes.ways import Way
 from sketch.typing import Points
 
 __all__ = ["with_tails"]

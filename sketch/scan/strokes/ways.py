@@ -2,7 +2,7 @@
 
 At most junctions one pairing of the branches is much smoother than all others.  Where none is, only what the
 strokes would make can tell; so the strokes of the next best pairings are given too, to be chosen among
-(`sketch.scan.settle`).
+(`sketch.scan.strokes.settle`).
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from itertools import combinations, islice
 
 import numpy as np
 
-from sketch.scan.courses import Course, Links, follow, through
-from sketch.scan.graph import Graph, Ink
-from sketch.scan.junctions import find_junctions
-from sketch.scan.outlines import Choice, close_outlines
-from sketch.scan.strokes import Layout
-from sketch.scan.unlifted import unlifted
+from sketch.scan.skeleton.graph import Graph, Ink
+from sketch.scan.skeleton.junctions import find_junctions
+from sketch.scan.strokes.closing import Choice, close_outlines
+from sketch.scan.strokes.courses import Course, Links, follow, through
+from sketch.scan.strokes.layout import Layout
+from sketch.scan.strokes.unlifted import unlifted
 from sketch.typing import Points
 
 __all__ = ["SIDE", "Way", "Ways"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sketch.scan.graph import Ink
+from sketch.scan.skeleton.graph import Ink
 from sketch.typing import Points
 
 __all__ = ["Stretches"]

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import Graph, Ink
-from sketch.scan.ways import Way
+from sketch.scan.skeleton.graph import Graph, Ink
+from sketch.scan.strokes.ways import Way
 from sketch.typing import Points
 
 __all__ = ["crossed"]

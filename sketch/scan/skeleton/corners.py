@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import turns
-from sketch.scan.graph import RING, Graph
 from sketch.scan.quantiles import median
+from sketch.scan.skeleton.graph import RING, Graph
 from sketch.typing import Points
 
 __all__ = ["begin_at_corner", "sharpen_corners"]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.graph import RING, Graph
+from sketch.scan.skeleton.graph import RING, Graph
 from sketch.typing import Points
 
 __all__ = ["centre_on_ink"]

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import crests, crisp_ink, darkness, link, measure_pieces, pieces
-from sketch.scan.broken import smooth_lines
-from sketch.scan.framed import within_frame
-from sketch.scan.punched import punched
+from sketch.scan.paper.broken import smooth_lines
+from sketch.scan.paper.framed import within_frame
+from sketch.scan.paper.punched import punched
+from sketch.scan.paper.ruling import FEWEST, drop_ruling
+from sketch.scan.paper.table import TABLE, closed, darkest_channel, find_sheet
 from sketch.scan.quantiles import median, percentile
-from sketch.scan.ruling import FEWEST, drop_ruling
-from sketch.scan.table import TABLE, closed, darkest_channel, find_sheet
 from sketch.typing import Image
 
 __all__ = [

@@ -10,9 +10,9 @@ from itertools import pairwise
 import numpy as np
 
 from sketch.scan.binding import nearest
-from sketch.scan.courses import Course, Links
-from sketch.scan.graph import RING, End, Graph
-from sketch.scan.junctions import LONELY, Branch, Junction, Pairs, turn_cost
+from sketch.scan.skeleton.graph import RING, End, Graph
+from sketch.scan.skeleton.junctions import LONELY, Branch, Junction, Pairs, turn_cost
+from sketch.scan.strokes.courses import Course, Links
 from sketch.typing import Points
 
 __all__ = ["CRUMB", "Layout"]

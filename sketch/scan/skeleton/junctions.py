@@ -16,7 +16,7 @@ from itertools import combinations
 import numpy as np
 
 from sketch.scan.binding import bend, heading
-from sketch.scan.graph import SIGHT, End, Graph
+from sketch.scan.skeleton.graph import SIGHT, End, Graph
 from sketch.typing import Points
 
 __all__ = ["LONELY", "Branch", "Junction", "Pairs", "find_junctions", "turn_cost"]

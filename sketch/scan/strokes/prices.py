@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from sketch.pieces import Page, Piece
 from sketch.scan.binding import coarseness, course_length
-from sketch.scan.graph import Ink
-from sketch.scan.strokes import CRUMB
-from sketch.scan.ways import SIDE, Way
+from sketch.scan.skeleton.graph import Ink
+from sketch.scan.strokes.layout import CRUMB
+from sketch.scan.strokes.ways import SIDE, Way
 from sketch.scoring import STRANGE, Fitted
 from sketch.typing import Points
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 import heapq
 from itertools import count
 
-from sketch.scan.courses import Course, Links
-from sketch.scan.graph import RING, End
-from sketch.scan.junctions import LONELY, turn_cost
-from sketch.scan.strokes import Layout
+from sketch.scan.skeleton.graph import RING, End
+from sketch.scan.skeleton.junctions import LONELY, turn_cost
+from sketch.scan.strokes.courses import Course, Links
+from sketch.scan.strokes.layout import Layout
 
 __all__ = ["unlifted"]
 

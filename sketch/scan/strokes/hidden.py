@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import heading
-from sketch.scan.graph import SIGHT
-from sketch.scan.ways import Way
+from sketch.scan.skeleton.graph import SIGHT
+from sketch.scan.strokes.ways import Way
 from sketch.typing import Points
 
 __all__ = ["going_on"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from sketch.scan.graph import RING, End, Graph
+from sketch.scan.skeleton.graph import RING, End, Graph
 from sketch.typing import Points
 
 __all__ = ["Course", "Links", "follow", "length", "through"]

@@ -19,8 +19,8 @@ from sketch.context import Context
 from sketch.kernel import depth
 from sketch.pieces import Page
 from sketch.proposals import HOPELESS, Proposals, Proposed, proposing
-from sketch.scan.prices import Prices
-from sketch.scan.ways import Way
+from sketch.scan.strokes.prices import Prices
+from sketch.scan.strokes.ways import Way
 from sketch.scoring import Fitted
 from sketch.search import Packing, part
 from sketch.typing import Array

@@ -6,9 +6,9 @@ But each encloses its own piece of paper.
 
 from __future__ import annotations
 
-from sketch.scan.sheet import Sheet
-from sketch.scan.stretches import Stretches
-from sketch.scan.ways import Way
+from sketch.scan.skeleton.stretches import Stretches
+from sketch.scan.strokes.subdivision import Subdivision
+from sketch.scan.strokes.ways import Way
 
 __all__ = ["standing"]
 
@@ -18,31 +18,31 @@ CUT = 5.0  # [rad²] of strain: where lines cross at two corners or more, what t
 SMALLEST = 4.0  # pen widths: a face whose area is no square of that is a gap between lines
 
 
-def standing(sheets: list[Sheet], stretches: Stretches) -> list[Way]:
+def standing(planes: list[Subdivision], stretches: Stretches) -> list[Way]:
     """The outlines of pieces of paper that have lines in common, each with all its ink, and without sides of others.
 
-    sheets: of one drawing, with its gaps, then without.  stretches: of all its ink.
+    planes: of one drawing, with its gaps, then without.  stretches: of all its ink.
     """
     found: dict[frozenset[int], Way] = {}
-    for sheet in sheets:
-        for way in _standing(sheet, stretches):
+    for plane in planes:
+        for way in _standing(plane, stretches):
             found.setdefault(frozenset(way.ink), way)
     return list(found.values())
 
 
-def _standing(sheet: Sheet, stretches: Stretches) -> list[Way]:
-    least = (SMALLEST * sheet.pen) ** 2
+def _standing(plane: Subdivision, stretches: Stretches) -> list[Way]:
+    least = (SMALLEST * plane.pen) ** 2
     found = [
         f
-        for f, face in sheet.faces.items()
-        if face.area > least and len(face.sides) <= MOST_SIDES and sheet.neighbours[f]
+        for f, face in plane.faces.items()
+        if face.area > least and len(face.sides) <= MOST_SIDES and plane.neighbours[f]
     ]
     if len(found) > MOST_FACES:
         return []
-    outlines = [outline for f in found if (outline := sheet.outline({f})).strain < CUT]
+    outlines = [outline for f in found if (outline := plane.outline({f})).strain < CUT]
     near = [stretches.beside(outline.points) for outline in outlines]
     cut = frozenset[int]().union(*(edges for outline in outlines for edges in outline.cut))
-    names = {e: stretches.at(sheet.middle(e)) for e in cut}
+    names = {e: stretches.at(plane.middle(e)) for e in cut}
     out = []
     for k, outline in enumerate(outlines):
         for lent in _lent(near, k):

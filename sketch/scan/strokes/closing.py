@@ -15,8 +15,8 @@ from functools import cache
 
 import numpy as np
 
-from sketch.scan.graph import End, Graph
-from sketch.scan.junctions import LONELY, Junction, Pairs, turn_cost
+from sketch.scan.skeleton.graph import End, Graph
+from sketch.scan.skeleton.junctions import LONELY, Junction, Pairs, turn_cost
 
 __all__ = ["SMOOTH", "Choice", "close_outlines", "ends_cost"]
 

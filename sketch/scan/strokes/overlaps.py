@@ -16,9 +16,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.sheet import Outline, Sheet
-from sketch.scan.stretches import Stretches
-from sketch.scan.ways import Way
+from sketch.scan.skeleton.stretches import Stretches
+from sketch.scan.strokes.subdivision import Outline, Subdivision
+from sketch.scan.strokes.ways import Way
 from sketch.typing import Points
 
 __all__ = ["overlapping"]
@@ -34,7 +34,7 @@ LEFT = 25.0  # nats to leave a line over
 SHARED = 60.0  # nats that two outlines are rarer which are the same in full; in part, a part of that
 DENTED = 100.0  # nats that an outline is rarer which takes nothing of its hull's area; some, a part of that
 PIVOT = 15.0  # nats that a ring is likelier over two bodies than elsewhere
-STRAIN = 6.0  # nats for each square radian of strain, as in `sketch.scan.settle`
+STRAIN = 6.0  # nats for each square radian of strain, as in `sketch.scan.strokes.settle`
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,28 +46,28 @@ class _Body:
     cost: float
 
 
-def overlapping(sheet: Sheet, rings: list[Points], stretches: Stretches) -> list[Way]:
-    """The outlines that a sheet's knots under a ring are best made of, each with its share of the ink and with all.
+def overlapping(plane: Subdivision, rings: list[Points], stretches: Stretches) -> list[Way]:
+    """The outlines that a plane's knots under a ring are best made of, each with its share of the ink and with all.
 
     rings: where pivots may be [pixels].  stretches: of all the ink.
     """
     out: list[Way] = []
-    for knot in _knots(sheet, rings) if rings else ():
-        bodies = sorted(_unions(sheet, knot), key=lambda body: body.cost)[:MOST_BODIES]
-        chosen = _fewest(bodies, sheet.length, knot.pivots) if len(bodies) > 1 else []
+    for knot in _knots(plane, rings) if rings else ():
+        bodies = sorted(_unions(plane, knot), key=lambda body: body.cost)[:MOST_BODIES]
+        chosen = _fewest(bodies, plane.length, knot.pivots) if len(bodies) > 1 else []
         if len(chosen) > 1:
             some = [bodies[k] for k in chosen]
-            out += _ways([body.outline for body in some], _grounds(sheet, some, stretches), stretches)
+            out += _ways([body.outline for body in some], _grounds(plane, some, stretches), stretches)
     return out
 
 
-def _grounds(sheet: Sheet, bodies: list[_Body], stretches: Stretches) -> list[frozenset[int]]:
+def _grounds(plane: Subdivision, bodies: list[_Body], stretches: Stretches) -> list[frozenset[int]]:
     """For each of some bodies the ink along what it stands on: faces beside it and beside those that overlap it."""
     out = []
     for body in bodies:
         over = (other.faces for other in bodies if not other.faces.isdisjoint(body.faces))
-        beside = set[int]().union(*(sheet.neighbours[f] for f in body.faces)).difference(*over)
-        grounds = (sheet.outline({f}) for f in beside if not sheet.is_thin(sheet.faces[f]))
+        beside = set[int]().union(*(plane.neighbours[f] for f in body.faces)).difference(*over)
+        grounds = (plane.outline({f}) for f in beside if not plane.is_thin(plane.faces[f]))
         out.append(frozenset[int]().union(*(stretches.beside(ground.points) for ground in grounds)))
     return out
 
@@ -81,61 +81,61 @@ class _Knot:
     pivots: list[int]
 
 
-def _knots(sheet: Sheet, rings: list[Points]) -> Iterator[_Knot]:
+def _knots(plane: Subdivision, rings: list[Points]) -> Iterator[_Knot]:
     """The faces that hang together where a ring lies in one of several."""
     middles = [ring[:-1].mean(axis=0) for ring in rings]
     done: set[int] = set()
-    for start in sheet.faces:
+    for start in plane.faces:
         if start in done:
             continue
         group = [start]
         done.add(start)
         for f in group:
-            group += sheet.neighbours[f] - done
-            done |= sheet.neighbours[f]
-        small = [f for f in group if sheet.is_thin(sheet.faces[f])]
+            group += plane.neighbours[f] - done
+            done |= plane.neighbours[f]
+        small = [f for f in group if plane.is_thin(plane.faces[f])]
         faces = [f for f in group if f not in small]
         if not 3 <= len(faces) <= MOST_FACES:
             continue
         pivots = set()
         for middle in middles:
-            holding = [f for f in faces if sheet.faces[f].holds(middle)]
-            pivots.update([min(holding, key=lambda f: sheet.faces[f].area)] if holding else [])
+            holding = [f for f in faces if plane.faces[f].holds(middle)]
+            pivots.update([min(holding, key=lambda f: plane.faces[f].area)] if holding else [])
         if pivots:
             yield _Knot(faces, small, sorted(pivots))
 
 
-def _unions(sheet: Sheet, knot: _Knot) -> list[_Body]:
+def _unions(plane: Subdivision, knot: _Knot) -> list[_Body]:
     """The connected sets of faces that are convex together, with the small ones in them."""
     import cv2
 
-    beside = {f: _about(sheet, f, knot) for f in knot.faces}
-    hulls = {f: cv2.convexHull(np.concatenate(sheet.faces[f].loops)) for f in knot.faces}
-    small = [(f, sheet.faces[f].loops[0].mean(axis=0).tolist()) for f in knot.small]
+    beside = {f: _about(plane, f, knot) for f in knot.faces}
+    hulls = {f: cv2.convexHull(np.concatenate(plane.faces[f].loops)) for f in knot.faces}
+    small = [(f, plane.faces[f].loops[0].mean(axis=0).tolist()) for f in knot.small]
     best: dict[frozenset[int], _Body] = {}
     for some in _connected(beside):
         if len(some) == 1 and not some.isdisjoint(knot.pivots):
             continue  # what is under a pivot alone is no body
         hull = cv2.convexHull(np.concatenate([hulls[f] for f in some]))
         whole = cv2.contourArea(hull)
-        if sum(sheet.faces[f].area for f in some) < WITHOUT_SMALL * SOLID * whole:
+        if sum(plane.faces[f].area for f in some) < WITHOUT_SMALL * SOLID * whole:
             continue
         within = [f for f, at in small if cv2.pointPolygonTest(hull, (at[0], at[1]), measureDist=False) >= 0]
-        solid = sum(sheet.faces[f].area for f in [*some, *within]) / whole
+        solid = sum(plane.faces[f].area for f in [*some, *within]) / whole
         if solid > SOLID:
-            outline = sheet.outline(some.union(within))
+            outline = plane.outline(some.union(within))
             body = _Body(outline, some, BODY + DENTED * (1 - solid) + STRAIN * outline.strain)
             if body.cost <= best.get(outline.lines, body).cost:
                 best[outline.lines] = body
     return list(best.values())
 
 
-def _about(sheet: Sheet, face: int, knot: _Knot) -> set[int]:
+def _about(plane: Subdivision, face: int, knot: _Knot) -> set[int]:
     """The faces that count beside a face, or with small ones between."""
     small, reached = set(knot.small), {face}
     queue = [face]
     for f in queue:
-        for n in sheet.neighbours[f] - reached:
+        for n in plane.neighbours[f] - reached:
             reached.add(n)
             if n in small:
                 queue.append(n)
