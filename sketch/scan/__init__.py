@@ -34,9 +34,10 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
     notes = []
     if not sound:
         notes.append("the picture's file is damaged: what could be decoded was read")
-    if traced.specks:
-        notes.append(f"left out {traced.specks} specks on the paper")
-    notes += traced.left_out
+    if (seen := traced.seen) is not None:
+        if seen.specks:
+            notes.append(f"left out {seen.specks} specks on the paper")
+        notes += seen.left_out
     if not traced.strokes:
         problem = traced.problem or "no ink was found on the picture: nothing was drawn"
         raise InputError("", problem, "; ".join(notes), kind="empty")

@@ -24,10 +24,10 @@ def write_stages(folder: str | os.PathLike[str], picture: NDArray[Any], traced: 
     import cv2
 
     pictures = {"4-strokes": _over(picture, traced)}
-    if traced.page is not None and traced.mask is not None and traced.skeleton is not None:
-        pictures["1-page"] = 255 - traced.page.darkness
-        pictures["2-mask"] = 255 - 255 * traced.mask
-        pictures["3-skeleton"] = 255 - np.maximum(255 * traced.skeleton, 60 * traced.mask)
+    if (seen := traced.seen) is not None:
+        pictures["1-page"] = 255 - seen.page.darkness
+        pictures["2-mask"] = 255 - 255 * seen.mask
+        pictures["3-skeleton"] = 255 - np.maximum(255 * seen.skeleton, 60 * seen.mask)
     Path(folder).mkdir(parents=True, exist_ok=True)
     paths = []
     for name, image in sorted(pictures.items()):

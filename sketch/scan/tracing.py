@@ -1,24 +1,18 @@
-"""From a picture to strokes: the page, its ink, the skeleton, the strokes."""
+"""From a picture to strokes: what is seen, the ways that the pen may have gone, and which of them it went."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from itertools import count
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import Chains, distances, smoothed, thin, trace
-from sketch.scan.paper.broken import is_broken
-from sketch.scan.paper.faint import drop_faint_marks
-from sketch.scan.paper.fills import FILL, fill_grain, fill_hatching, hollow_fills
-from sketch.scan.paper.grain import smoothed_grain
-from sketch.scan.paper.lying import drop_things
-from sketch.scan.paper.page import Page, drop_specks, ink_mask, read_page
-from sketch.scan.quantiles import percentile
+from sketch.scan.binding import Chains, smoothed
+from sketch.scan.looking import Seen, look
 from sketch.scan.skeleton.corners import begin_at_corner, sharpen_corners
 from sketch.scan.skeleton.graph import Graph, build_graph
 from sketch.scan.skeleton.ridge import centre_on_ink
@@ -33,137 +27,47 @@ from sketch.scan.strokes.settle import settle
 from sketch.scan.strokes.subdivision import Subdivision, bridged
 from sketch.scan.strokes.tails import with_tails
 from sketch.scan.strokes.ways import Way, Ways
-from sketch.typing import Points
+from sketch.typing import Image, Points
 
 __all__ = ["Traced", "trace_picture"]
 
-WORK_PIXELS = 2_500_000  # more than this are not looked at before the pen's width is known
-MOST_PIXELS = 16_000_000  # that are ever looked at: no pen is as thin as a pixel of these
 MOST_LINES = 4000  # between junctions: drawings of hundreds of things have as many, fine print has more
-DOTTED = 0.12  # of the picture's pixels: lines of a drawing are farther apart than eight pixels
-FEWEST_DOTS = 10_000  # [pixels] unless the picture is as small as a stamp
-LEAST_SIDE = 8  # [pixels] of a picture that can show anything
-FINEST = 0.5  # picture pixels to a pixel: the thinnest pens are thinned at twice the picture's resolution
-NARROWEST_PEN = 3.0  # [pixels]: a thinner pen is thinned at twice the resolution
-WIDEST_PEN = 8.0  # [pixels]: a wider pen is thinned at half the resolution
-ANY_PEN = 6.4  # [pixels]: taken where there are no lines to tell
-FILLED = 0.025  # of the picture's size: no pen is as wide, so that all shapes are filled
 SMOOTHING = 0.8  # [points]: standard deviation of the smoothing along a stroke
 CERTAIN = -5.0  # [rad²]: a ring with less strain is not looked at as anything else
 FEW = 4  # lines: an X with a loop has three, what a ring joins has more
-NEARBY = 4  # [pixels] within which ink is compared with the darkest
 
 
 @dataclass(eq=False)
 class Traced:
-    """What was seen on a picture, stage by stage.
+    """What was read of a picture.
 
     Attributes:
         strokes: each shape (n, 2) [pixels of the picture].
-        scale: picture pixels to a pixel of the stages' pictures.
-        page: darkness under even light.  mask: ink 1, paper 0.  skeleton: its lines.  distance: of the ink to the
-            paper.  All None where the picture is too small to show anything.
-        pen: width of the pen [pixels of the stages' pictures].
-        specks: how many pieces were too small to be anything.
-        left_out: notes of what is on the paper and was not drawn.
+        seen: what they were read from; None where the picture is too small to show anything.
         problem: why nothing was read, if there was something.
     """
 
-    strokes: list[Points] = field(default_factory=list)
-    scale: float = 1.0
-    page: Page | None = None
-    mask: NDArray[Any] | None = None
-    skeleton: NDArray[Any] | None = None
-    distance: NDArray[Any] | None = None
-    pen: float = 0.0
-    specks: int = 0
-    left_out: list[str] = field(default_factory=list)
+    strokes: list[Points]
+    seen: Seen | None
     problem: str = ""
 
 
-def trace_picture(picture: NDArray[Any]) -> Traced:
-    """Trace a BGR picture, shape (h, w, 3), uint8."""
-    scale = 1.0
-    while picture.shape[0] * picture.shape[1] > WORK_PIXELS * scale * scale:
-        scale *= 2
-    tried: set[float] = set()
-    while True:
-        seen = _see(picture, scale)
-        if not seen.pen:
-            return seen
-        tried.add(scale)
-        scale *= (
-            2.0 if seen.pen > WIDEST_PEN or _is_dotted(seen) else 0.5 if seen.pen < NARROWEST_PEN else 1.0
-        )
-        pixels = picture.shape[0] * picture.shape[1] / scale**2
-        if scale in tried or scale < FINEST or pixels > MOST_PIXELS or min(picture.shape[:2]) < 100 * scale:
-            break
-    if _is_dotted(seen):
-        seen.problem = "nothing was read: dots or shading cover the picture"
-    else:
-        seen.strokes = _strokes(seen)
-    return seen
+def trace_picture(picture: Image) -> Traced:
+    """Trace a BGR picture."""
+    seen = look(picture)
+    if seen is None or not seen.pen:
+        return Traced([], seen)
+    if seen.is_dotted:
+        return Traced([], seen, "nothing was read: dots or shading cover the picture")
+    chains = seen.lines()
+    if (count := len(chains.chains)) > MOST_LINES:
+        return Traced([], seen, f"nothing was read: {count} lines are too many for a drawing")
+    return Traced(_strokes(chains, seen), seen)
 
 
-def _is_dotted(seen: Traced) -> bool:
-    """Whether the ink is the dots of a dithered or printed grey, which is looked at from farther off."""
-    if seen.skeleton is None:
-        return False
-    return bool(np.count_nonzero(seen.skeleton) > max(DOTTED * seen.skeleton.size, FEWEST_DOTS))
-
-
-def _see(picture: NDArray[Any], scale: float) -> Traced:
-    """The stages up to the skeleton, at one picture pixel in `scale`; without a pen where there is no ink."""
-    import cv2
-
-    work = picture
-    if scale > 1:
-        work = cv2.resize(picture, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
-    work = smoothed_grain(work)
-    if scale < 1:
-        work = cv2.resize(work, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_LINEAR)
-    if min(work.shape[:2]) < LEAST_SIDE:
-        return Traced()
-    page = read_page(work)
-    seen = _inked(page, scale)
-    if seen.pen and seen.skeleton is not None and is_broken(seen.skeleton, seen.pen):
-        return _inked(page.smoothed(2 * NEARBY), scale)
-    return seen
-
-
-def _inked(page: Page, scale: float) -> Traced:
-    """The stages from the page to the skeleton; without a pen where there is no ink."""
-    mask, left_out = ink_mask(page, NEARBY)
-    skeleton, size = thin(mask)
-    distance = distances(mask)
-    if size and page.edge is not None and (things := drop_things(mask, skeleton, distance, page.edge)):
-        left_out.append(f"left out {things} things that lie across the edge of the sheet")
-    pen = _pen_width(mask, skeleton, distance) if size else 0.0
-    return Traced([], scale, page, mask, skeleton, distance, pen, left_out=left_out)
-
-
-def _pen_width(mask: NDArray[Any], skeleton: NDArray[Any], distance: NDArray[Any]) -> float:
-    """The width of the pen: the ink's area over its length, without what is filled."""
-    import cv2
-
-    thickness = distance[skeleton.view(np.bool_)]
-    core = 2 * FILL * percentile(thickness, 20)
-    pen = cv2.countNonZero(mask) / len(thickness)
-    if (thick := float(thickness.max())) > core:
-        side = 2 * round(2 * core) + 1  # also into its corners
-        filled = cv2.dilate((distance > core).view(np.uint8), np.ones((side, side), np.uint8))
-        area, length = (int(np.count_nonzero(some > filled)) for some in (mask, skeleton))
-        without = area / length if length else ANY_PEN
-        pen = without if thick > FILL * without else pen  # a blot is not filled
-    return pen if pen < FILLED * mask.size**0.5 else ANY_PEN
-
-
-def _strokes(seen: Traced) -> list[Points]:
+def _strokes(chains: Chains, seen: Seen) -> list[Points]:
     """The strokes of the ink that was seen: of all that may have been drawn, what makes the most sense together."""
-    chains = _lines(seen)
     page, mask, distance, pen = seen.page, seen.mask, seen.distance, seen.pen
-    if chains is None or page is None or mask is None or distance is None:
-        return []
     graph = build_graph(chains, distance, pen)
     centre_on_ink(graph, page.darkness, pen)
     sharpen_corners(graph, distance, pen)
@@ -194,40 +98,6 @@ def _strokes(seen: Traced) -> list[Points]:
     return _points(chosen + [_drawn(way, seen) for way in ways.likeliest(without=used) + left])
 
 
-def _lines(seen: Traced) -> Chains | None:
-    """The lines of the skeleton, without what was not drawn as a line: fills, shading, faint marks, specks.
-
-    What was seen is as it is without these, then. None, with the reason, where there are too many.
-    """
-    import cv2
-
-    page, mask, skeleton, distance, pen = seen.page, seen.mask, seen.skeleton, seen.distance, seen.pen
-    if page is None or mask is None or skeleton is None or distance is None:
-        return None
-    seen.specks = drop_specks(mask, distance, pen)
-    if fill_hatching(mask, pen):
-        distance = distances(mask)
-    if hollowed := hollow_fills(mask, distance, pen):
-        distance = distances(mask)
-    if fill_grain(mask, distance, pen) or hollowed:
-        skeleton, size = thin(mask)
-    else:
-        skeleton &= mask
-        size = cv2.countNonZero(skeleton)
-    chains = trace(skeleton, size)
-    if faint := drop_faint_marks(mask, page.darkness, chains, distance, pen):
-        seen.left_out.append(f"left out {faint} marks that are far fainter than the pen's")
-        distance = distances(mask)
-        drop_specks(mask, distance, pen)
-        skeleton, size = thin(mask)
-        chains = trace(skeleton, size)
-    seen.skeleton, seen.distance = skeleton, distance
-    if len(chains.chains) > MOST_LINES:
-        seen.problem = f"nothing was read: {len(chains.chains)} lines are too many for a drawing"
-        return None
-    return chains
-
-
 class _Rings(NamedTuple):
     """The small rings of a drawing.
 
@@ -243,7 +113,7 @@ class _Rings(NamedTuple):
     tangles: list[Graph]
 
 
-def _without_rings(graph: Graph, mask: NDArray[Any], distance: NDArray[Any], pen: float) -> _Rings:
+def _without_rings(graph: Graph, mask: Image, distance: NDArray[np.float32], pen: float) -> _Rings:
     """Take the small rings out of the graph, in place: the certain ones first."""
     found, names = find_rings(mask, distance, pen), count()
     plain, certain = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
@@ -269,7 +139,7 @@ def _in_tangles(tangles: list[Graph], known: list[Way], pen: float) -> list[Way]
     return found
 
 
-def _drawn(way: Way, seen: Traced) -> Way:
+def _drawn(way: Way, seen: Seen) -> Way:
     """A way as it is handed on: begun at a corner, smooth, in the picture's pixels."""
     points = smooth(begin_at_corner(way.points, seen.pen), SMOOTHING)
     ink = way.ink
