@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -15,7 +16,7 @@ from sketch.kernel import depth, is_simple
 from sketch.reading import Reading
 from sketch.typing import Array
 
-__all__ = ["Bodies", "Drawn", "draw_body", "thick", "touch"]
+__all__ = ["Bodies", "Drawn", "draw_body", "ids", "thick", "touch"]
 
 # After Okabe and Ito, and Tol: told apart by colour-blind readers, and by their lightness in print.
 PALETTE = [
@@ -37,6 +38,16 @@ class Drawn:
     outline: Array
     size: float
     body: Body
+
+    @cached_property
+    def middle(self) -> Array:
+        """Of its corners: of a circle its centre [pixels], (2,)."""
+        return np.asarray(self.outline.mean(axis=0))
+
+    @property
+    def radius(self) -> float:
+        """Of a circle, or of one as large [pixels]."""
+        return self.size / math.sqrt(math.pi)
 
     def depth(self, point: Array) -> float:
         """Distance of a point from the outline [pixels], negative inside."""
@@ -102,9 +113,16 @@ def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float
     return Drawn(reading, outline, size, body)
 
 
-def touch(a: Drawn, b: Drawn, at: Array, radius: float) -> bool:
-    """Whether two bodies overlap, or are less than `radius` apart, within some radii of a point."""
-    return kernel.touch(a.outline, b.outline, (float(at[0]), float(at[1])), 5 * radius, radius)
+def touch(a: Drawn, b: Drawn, ring: Drawn) -> bool:
+    """Whether two bodies overlap, or are less than a ring's radius apart, within some radii of its middle."""
+    x, y = ring.middle.tolist()
+    return kernel.touch(a.outline, b.outline, (x, y), 5 * ring.radius, ring.radius)
+
+
+def ids(bodies: list[Drawn]) -> str:
+    """Bodies as a note names them."""
+    *most, last = [d.body.id for d in bodies]
+    return f"{', '.join(most)} and {last}" if most else last
 
 
 def _moments(corners: list[complex]) -> tuple[float, complex]:

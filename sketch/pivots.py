@@ -1,0 +1,269 @@
+"""Pivots: small circles that join the bodies under them, or fix one to the page."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Set
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.scene import Joint
+from sketch.bodies import Bodies, Drawn, ids, touch
+from sketch.ink import Sketch
+from sketch.kernel import depth
+from sketch.pins import is_on_line
+
+__all__ = ["UNSURE", "pivots"]
+
+# radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
+JOINS = 0.3
+NAILS = 0.12  # likewise of a pivot to the background: a ball in front of one body is common
+WHEEL = 20.0  # times that a circle with a much smaller one at its centre is likelier a wheel than a pin
+NEAR = 2.5  # radii from a pivot's centre to a body that it misses by a slip of the hand
+AROUND = 5.0  # radii, likewise to one whose ink runs on beyond its outline, into the circle
+ON = 0.5  # radii from a small circle's centre to where two bodies meet: a ball that lies on both is a whole one off
+CUT = 0.85  # of a wheel's radius, from its centre to a body that it overlaps too much for one that it only touches
+UNSURE = 0.2  # a reading with a rival of this probability is named in the notes
+
+
+class _Pin(NamedTuple):
+    """A ring that is a pivot: of the one or two bodies `under` it, and of `further` ones that it goes through."""
+
+    ring: Drawn
+    under: list[Drawn]
+    further: list[Drawn]
+    joint: Joint
+
+
+def pivots(
+    sketch: Sketch, bodies: Bodies, fixed: Set[Drawn], pixels_per_metre: float, pin: float, notes: list[str]
+) -> list[Joint]:
+    """Small circles over bodies that overlap, or over one beside which they are small, become pivots.
+
+    fixed: those that are anchored.  pin: radius that one to the background, or of an open line, hardly exceeds
+    [pixels].  Returns the joints in the order in which their circles were drawn.
+    """
+    circles = [d for d in bodies.drawn if d.reading.kind == "circle"]
+    pins: list[_Pin] = []
+    for ring in sorted(circles, key=lambda d: -d.size):  # so that a pivot is asked of bodies, not of pivots
+        if ring.reading.forced in ("ball", "circle"):
+            continue
+        under, further, odds = _odds(sketch, ring, bodies, fixed, pin)
+        if not under or not _is_pivot(ring, under, odds, notes):
+            continue
+        x, y = (ring.middle / pixels_per_metre).tolist()
+        again = [p.joint for p in pins if _is_again(p, ring, under)]
+        for joint in again:  # the smaller, which comes later, says better where
+            joint.position = (x, -y)
+        if again:
+            continue
+        if len(under) == 1 and odds < 1 - UNSURE:
+            notes.append(_either(ring, f"a pivot of {ids(under)} to the page", "a ball"))
+        pair = (under[0].body.id, under[1].body.id if len(under) == 2 else None)
+        pins.append(_Pin(ring, under, further, Joint(bodies=pair, position=(x, -y))))
+    pins.sort(key=lambda p: bodies.drawn.index(p.ring))
+    return [p.joint for p in pins] + _through(pins, bodies)
+
+
+def _odds(
+    sketch: Sketch, ring: Drawn, bodies: Bodies, fixed: Set[Drawn], pin: float
+) -> tuple[list[Drawn], list[Drawn], float]:
+    """The bodies under a ring, as of `_under`, and how likely it is a pivot."""
+    under, further, odds = _under(sketch, ring, bodies, fixed)
+    if ring.reading.forced == "pivot":
+        return under or [d for _, d in _near(ring, NEAR * ring.radius, bodies)][:1], further, 1.0
+    if len(under) == 1 or any(d.reading.kind == "bar" for d in under):
+        odds *= 1 / (1 + (ring.radius / pin) ** 6)
+    if _pinned(ring, bodies):
+        odds /= odds + (1 - odds) * WHEEL
+    return under, further, odds
+
+
+def _is_pivot(ring: Drawn, under: list[Drawn], odds: float, notes: list[str]) -> bool:
+    """Whether a ring is taken for a pivot; its reading says so, and what else it may be."""
+    reading, is_pivot = ring.reading, odds >= 0.5
+    rival = ("ball", 1 - odds) if is_pivot else ("pivot", odds)
+    reading.alternatives = sorted([*reading.alternatives, rival], key=lambda t: -t[1])
+    if is_pivot:
+        reading.kind = "pivot"
+        reading.score *= odds
+    elif len(under) == 1 and odds > UNSURE:
+        notes.append(_either(ring, f"a ball in front of {ids(under)}", "a pivot to the page"))
+    return is_pivot
+
+
+def _is_again(pin: _Pin, ring: Drawn, under: list[Drawn]) -> bool:
+    """Whether a ring is a pivot drawn again: one that overlaps a ring over the same bodies, or is within one."""
+    r = pin.ring.radius
+    return math.dist(pin.ring.middle, ring.middle) < (
+        r + ring.radius if pin.under == under else r - ON * ring.radius
+    )
+
+
+def _through(pins: list[_Pin], bodies: Bodies) -> list[Joint]:
+    """The joints with what pivots go through besides the two bodies in front."""
+    joints: list[Joint] = []
+    pairs = {frozenset(pin.joint.bodies) for pin in pins}
+    for pin in pins:
+        through = list(pin.under)
+        for d in pin.further:
+            # a rod on the rim of a wheel turns on the wheel, not on the frame behind that the wheel turns on
+            if any({d.body.id, other.body.id} in pairs for other in through):
+                continue
+            # each pair is joined, as only those that are may overlap at the pin
+            for other in through:
+                a, b = sorted((other, d), key=bodies.drawn.index)
+                joints.append(Joint(bodies=(a.body.id, b.body.id), position=pin.joint.position))
+            through.append(d)
+    return joints
+
+
+def _pinned(ring: Drawn, bodies: Bodies) -> bool:
+    """Whether a ring has a pivot of its own: a much smaller circle at its centre. Nobody pins a pin."""
+    reach = JOINS * ring.radius
+    return any(
+        d is not ring
+        and d.reading.kind == "circle"
+        and d.radius < 2 * reach
+        and math.dist(ring.middle, d.middle) < reach
+        for d in bodies.near(ring.middle, reach)
+    )
+
+
+def _under(
+    sketch: Sketch, ring: Drawn, bodies: Bodies, fixed: Set[Drawn]
+) -> tuple[list[Drawn], list[Drawn], float]:
+    """The two bodies that a ring would be a pivot of, or one, in order of drawing; further ones that it goes through;
+    and how likely it is a pivot rather than a ball.
+
+    The foremost two that its centre is over, or the one and one more that it misses by a slip of the hand; or else two
+    that meet in it, if it is as small as a nail. What is behind those two is joined too, unless it holds the whole of
+    one: that moves in front of it.
+    """
+    radius, near = ring.radius, _near(ring, AROUND * ring.radius, bodies)
+    over = bool(near) and near[0][0] <= 0
+    further: list[Drawn] = []
+    if over:
+        (_, first), *rest = near
+        missed = [d for depth, d in rest if depth > 0 and _off_ink(sketch, d, ring) < radius]
+        first, *others = every = _foremost([first, *(d for depth, d in rest if depth <= 0)], missed)
+        further = [
+            d for d in others[1:] if d not in missed and not any(_holds(d, e) for e in every if e is not d)
+        ]
+        reach = NEAR * radius
+    else:
+        rest = [(depth, d) for depth, d in near if depth < NEAR * radius and radius < NAILS * d.size]
+        off = {d: min(depth, _off_ink(sketch, d, ring)) for depth, d in rest} if len(rest) > 1 else {}
+        first = min(off, key=lambda d: off[d], default=ring)
+        if off.get(first, math.inf) > ON * radius:
+            return [], [], 0.0
+        others, reach = [], (1 + ON) * radius
+    if not others:
+        others = [d for depth, d in rest if d is not first and depth < reach and touch(first, d, ring)]
+    if over and not others:
+        others = _axle(first, ring, bodies) or _missed(first, rest, ring, fixed)
+    under = [first, *others[:1]]
+    if not over and len(under) == 1:
+        return [], [], 0.0
+    limit = JOINS if len(under) == 2 and over else NAILS
+    odds = 1 / (1 + (radius / (limit * min(d.size for d in under))) ** 6)
+    return sorted(under, key=bodies.drawn.index), further, odds
+
+
+def _missed(first: Drawn, near: list[tuple[float, Drawn]], ring: Drawn, fixed: Set[Drawn]) -> list[Drawn]:
+    """What a ring over one body misses by more than a slip of the hand, where it says nothing else.
+
+    A pin from an anchored body to the page means nothing, and one to an anchored body holds as one to the page does;
+    and no rod ends beside a ring by chance.
+    """
+    found = [d for depth, d in near if depth < NEAR * ring.radius and (d in fixed) != (first in fixed)]
+    return found or [d for _, d in near if d.reading.kind == "bar" and _ends_near(d, ring)]
+
+
+def _ends_near(bar: Drawn, ring: Drawn) -> bool:
+    return bool(np.hypot(*(bar.reading.outline[[0, -1]] - ring.middle).T).min() < NEAR * ring.radius)
+
+
+def _foremost(over: list[Drawn], missed: list[Drawn]) -> list[Drawn]:
+    """Of bodies that a point is over, or misses by a slip of the hand, those in front first.
+
+    One that holds the whole of another is what that moves in front of; of others, over which it is, the one drawn
+    last is.
+    """
+    every = [*over, *missed]
+    if len(every) < 3:
+        return every
+    holds = {d: sum(_holds(d, e) for e in every if e is not d) for d in every}
+    return sorted(every, key=lambda d: (holds[d], d in missed, -d.reading.strokes[-1]))
+
+
+def _holds(d: Drawn, other: Drawn) -> bool:
+    """Whether the whole of another body is within one."""
+    return all(d.depth(p) < 0 for p in other.outline)
+
+
+def _near(ring: Drawn, reach: float, bodies: Bodies) -> list[tuple[float, Drawn]]:
+    """The bodies within `reach` of a ring that is small beside them, with the distances of its middle from them
+    [pixels], negative inside; the deepest first."""
+    large = [
+        d
+        for d in bodies.near(ring.middle, reach)
+        if d is not ring and d.reading.solid and ring.radius < 2 * JOINS * d.size
+    ]
+    near = [(off, d) for d in large if (off := _off(d, ring)) < reach]
+    return sorted(near, key=lambda t: t[0])
+
+
+def _off(d: Drawn, ring: Drawn) -> float:
+    """How far a ring's middle is from a body [pixels], negative inside; 0 from an open line that it is over."""
+    depth, line = d.depth(ring.middle), d.reading.outline
+    if d.reading.kind == "bar" and depth > 0:
+        long = float(np.hypot(*np.ptp(line, axis=0)))
+        depth *= not is_on_line(ring.middle.tolist(), math.sqrt(8) * ring.radius, line, long)
+    return depth
+
+
+def _axle(wheel: Drawn, ring: Drawn, bodies: Bodies) -> list[Drawn]:
+    """What a ring at the centre of a wheel joins it to: the body that the wheel overlaps the most, if by much.
+
+    A wheel that is pinned to the background stands free, or touches; and a rod that is pinned to it elsewhere is none
+    that it turns on.
+    """
+    deep = CUT * wheel.radius
+    if wheel.reading.kind != "circle" or math.dist(ring.middle, wheel.middle) > JOINS * wheel.radius:
+        return []
+    others = [
+        (d.depth(ring.middle), d)
+        for d in bodies.near(ring.middle, deep)
+        if d is not wheel
+        and d is not ring
+        and d.reading.solid
+        and wheel.radius < 2 * d.size
+        and ring.radius < 2 * JOINS * d.size
+    ]
+    by_depth = sorted(others, key=lambda t: t[0])
+    return [d for depth, d in by_depth if depth < deep and not _joined(wheel, d, ring, bodies)]
+
+
+def _joined(wheel: Drawn, other: Drawn, ring: Drawn, bodies: Bodies) -> bool:
+    """Whether a further ring, no larger than twice the size of one, lies over both a wheel and another body."""
+    near = bodies.near(wheel.middle, wheel.radius)
+    rings = (d for d in near if d.reading.kind in ("circle", "pivot") and d not in (ring, wheel))
+    return any(
+        _off(wheel, further) <= 0 and _off(other, further) <= 0
+        for further in rings
+        if further.size < 2 * ring.size
+    )
+
+
+def _off_ink(sketch: Sketch, d: Drawn, ring: Drawn) -> float:
+    """The distance of a ring's middle from the ink that a body was drawn with [pixels]."""
+    x, y = ring.middle.tolist()
+    inks = (sketch.strokes[s].points[:, :2] for s in d.reading.strokes)
+    there_and_back = (np.concatenate([ink, ink[-2:0:-1]]) for ink in inks)  # closed, around nothing
+    return min((abs(depth(x, y, ink)) for ink in there_and_back), default=math.inf)
+
+
+def _either(ring: Drawn, taken: str, other: str) -> str:
+    return f"the small circle of {ring.reading.named} was taken for {taken}; it may be {other}"
