@@ -70,6 +70,11 @@ class Piece:
         """Nats to say its ink freely."""
         return unread(self)
 
+    def is_near(self, other: Piece, reach: float) -> bool:
+        """Whether its box comes within `reach` of another's [pixels]."""
+        (a, b, c, d), (e, f, g, h) = self.box, other.box
+        return e < c + reach and f < d + reach and g > a - reach and h > b - reach
+
     def line(self, k: int) -> Array:
         """Its best polyline of k segments [pixels], (k + 1, 2)."""
         return self.vertices[k, : k + 1].copy()

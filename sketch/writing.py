@@ -1,19 +1,20 @@
 """Writing beside a machine: small strokes in a row, some of which mean nothing, are letters, and so are the rings and
-crosses among them. A line with a mark at either end says how long something is."""
+crosses among them."""
 
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
-from collections.abc import Collection, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 
 import numpy as np
 
+from sketch.dimensions import dimension_line
 from sketch.hatching import hatching
-from sketch.kernel import depth, words
-from sketch.pieces import Page, Piece
+from sketch.kernel import depth
+from sketch.pieces import Page
 from sketch.pins import REACH, is_over
 from sketch.proposals import Pick, Proposed, Row
+from sketch.rows import TALL, Rows, near_one_another
 from sketch.scoring import Fitted
 from sketch.typing import Point
 
@@ -22,13 +23,11 @@ __all__ = ["LARGEST", "WITHIN", "WRITTEN", "written"]
 # nats that another thing in a row is likelier a letter, for each stroke there that means nothing
 WRITTEN = 60.0
 LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
-TALL = 2.5  # times that a thing in a word is as large as another: a capital as a small letter
 WITHIN = 2 * WRITTEN  # likewise of what is drawn over a body, which else is a mark on it
 # times that it is as large as a letter there, at most: marks are larger than what is written at them
 MARKED = {"circle": 1.7, "cross": 1.25}
 # of the larger stroke: between a letter and the next, at most; a mark is set apart, and of two bars
 NEXT = {"circle": 0.5, "cross": 0.35}
-BETWEEN = 1.0  # of the larger stroke: what is between the strokes of a word, at most
 SAME = 0.1  # and between strokes of one
 CLEAR = 0.08  # of a body's narrower half: as far from its outline as what is written in it is, at least
 JOINED = 0.35  # of a bar of an X: as near to its ends are those of what joins them
@@ -38,9 +37,6 @@ STRAIGHT = 0.9  # of its length, the distance of the ends of a letter's bar, at 
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
 HATCHED = WRITTEN  # nats that a stroke of hatching is no side of an outline
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
-MARK = 0.25  # of a line's length: a mark at the end of a dimension line is as large
-AT_END = 0.05  # of a line's length: a mark at the end of a dimension line is as near to that
-ON = 0.1  # of its extent: strokes so near to a line, but not at its ends, mean something else: hatching, a floor
 
 
 def written(
@@ -52,14 +48,6 @@ def written(
     that are no gravity.
     """
     chosen = [(proposed[p].candidates[k], told[p][k], proposed[p].rows[k]) for p, k in likely]
-    # an X loses by its surroundings where no body is
-    crosses = {c for (c, gain, _), (p, k) in zip(chosen, likely, strict=True) if gain < proposed[p].gains[k]}
-    idle = pointing | page.pieces.keys() - {
-        i
-        for c, *_ in chosen
-        if c.kind != "bar" and not (c.kind == "cross" and c in crosses)
-        for i in c.pieces
-    }
     marks = _Marks(page, [(c, row) for c, _, row in chosen], LARGEST * page.drawn)
     letters = marks.in_bodies()
     pins = {  # among those, each as a ring
@@ -69,26 +57,16 @@ def written(
         if gain > 0 and not letters.isdisjoint(c.pieces) and marks.joins(c, row[4])
         for i in c.pieces
     }
-    idle |= letters - pins
-    near, fresh = _near(page, marks.largest, idle), idle
-    rows = _Rows(page, near, idle)
-    known = dict[Fitted, float]()  # what each loses
-    while fresh:
-        anew = {id(rows.of[i]) for i in fresh & rows.of.keys()}
-        lost = set[int]()
-        for c, gain, row in chosen:
-            if any(id(rows.of.get(i)) in anew for i in c.pieces):
-                known[c] = loss = marks.loss(rows, c, row)
-                lost.update(c.pieces if gain < loss else ())
-        fresh = lost - idle
-        if fresh:
-            idle = idle | fresh
-            rows = _Rows(page, near, idle)
+    alone = (proposed[p].gains[k] for p, k in likely)  # an X loses by its surroundings where no body is
+    idle_crosses = {
+        c for (c, gain, _), own in zip(chosen, alone, strict=True) if c.kind == "cross" and gain < own
+    }
+    meant = {i for c, *_ in chosen if c.kind != "bar" and c not in idle_crosses for i in c.pieces}
+    rows, idle, known = _spread(page, marks, chosen, pointing | (page.pieces.keys() - meant) | letters - pins)
     lone = [page.pieces[i] for i in sorted(idle)]
-    lines = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
-    measured = {
-        i for bar in lines if idle.issuperset(bar.pieces) for i in _measured(page, bar, lone)
-    } | pointing
+    bars = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
+    lines = (dimension_line(page, bar, lone) for bar in bars if idle >= set(bar.pieces))
+    measured = pointing.union(*lines)
     hatched = hatching(page, marks.largest, idle)
     touched = rows.of.keys() | measured | letters | hatched
     out = list(told)
@@ -104,6 +82,31 @@ def written(
                     own[k] -= WITHIN * (c.kind != "circle" or pins.isdisjoint(c.pieces))
                 own[k] -= HATCHED * (c.closed and len(hatched.intersection(c.pieces)))
     return out
+
+
+def _spread(
+    page: Page, marks: _Marks, chosen: Sequence[tuple[Fitted, float, Row]], idle: Set[int]
+) -> tuple[Rows, Set[int], dict[Fitted, float]]:
+    """The rows of strokes that mean nothing, as they make letters of what is beside them, and these of what is beside
+    these, until nothing changes; which strokes mean nothing then; and what each of the likely readings loses [nats].
+
+    chosen: the likely readings, each with its gain, and where it is.  idle: what means nothing by itself.
+    """
+    near, fresh = near_one_another(page, marks.largest, idle), idle
+    rows = Rows(page, near, idle)
+    known = dict[Fitted, float]()
+    while fresh:
+        anew = {id(rows.of[i]) for i in fresh & rows.of.keys()}
+        lost = set[int]()
+        for c, gain, row in chosen:
+            if any(id(rows.of.get(i)) in anew for i in c.pieces):
+                known[c] = loss = marks.loss(rows, c, row)
+                lost.update(c.pieces if gain < loss else ())
+        fresh = lost - idle
+        if fresh:
+            idle = idle | fresh
+            rows = Rows(page, near, idle)
+    return rows, idle, known
 
 
 class _Marks:
@@ -141,7 +144,7 @@ class _Marks:
                 found.update(c.pieces)
         return found
 
-    def loss(self, rows: _Rows, c: Fitted, where: Row) -> float:
+    def loss(self, rows: Rows, c: Fitted, where: Row) -> float:
         """Nats that a reading is rarer, given the strokes that mean nothing in the rows that its pieces stand in.
 
         A pivot is no letter. What else is drawn over a body is one if they are within that body too, and
@@ -221,7 +224,7 @@ class _Marks:
         pieces, other = self._page.pieces, self._page.pieces[i]
         reach = NEXT[c.kind] if size < MARKED[c.kind] * other.extent else SAME
         reach *= max(size, other.extent)
-        near = [pieces[j].stroke for j in c.pieces if _boxes_near(pieces[j], other, reach)]
+        near = [pieces[j].stroke for j in c.pieces if pieces[j].is_near(other, reach)]
         if not near:
             return False
         ink = self._page.strokes.samples
@@ -270,108 +273,3 @@ class _Marks:
             bodies = ((self._bodies[k], self._extents[k]) for k in np.flatnonzero(near).tolist())
             self._known[c] = [b for b, large in bodies if is_over(c, extent, b, large)]
         return self._known[c]
-
-
-def _near(page: Page, largest: float, idle: Set[int]) -> dict[int, list[int]]:
-    """Of each stroke smaller than `largest` [pixels] the others that may be in one word with it, or in one line.
-
-    What is between two words is as wide as the largest of their strokes.
-    """
-    near: dict[int, list[int]] = {i: [] for i, p in page.pieces.items() if p.extent < largest}
-    for i, j in words(page.strokes, {i: page.pieces[i].extent for i in near}, BETWEEN):
-        near[i].append(j)
-        near[j].append(i)
-    tall = dict[int, float]()
-    for start in idle & near.keys():
-        if start not in tall:
-            word = _joined(near, start)
-            tall.update(dict.fromkeys(word, max(page.pieces[i].extent for i in word)))
-    for i, j in words(page.strokes, tall, BETWEEN) if len(tall) > 1 else ():
-        if j not in near[i]:
-            near[i].append(j)
-            near[j].append(i)
-    return near
-
-
-def _joined(near: dict[int, list[int]], start: int) -> list[int]:
-    """A stroke and all that are near it, near these, and so on."""
-    found, known = [start], {start}
-    for i in found:  # it grows meanwhile
-        new = [j for j in near[i] if j not in known]
-        known.update(new)
-        found += new
-    return found
-
-
-class _Rows:
-    """The rows in which small strokes stand, near one another, with some that mean nothing: these are idle.
-
-    Attributes:
-        of: by stroke, the idle ones in its row: TALL times their extents, in order, and which they are.
-        middles: of the boxes around the idle ones [pixels].
-    """
-
-    def __init__(self, page: Page, near: dict[int, list[int]], idle: Set[int]) -> None:
-        """near: of each small stroke the others that may be in one word with it."""
-        self.of: dict[int, tuple[list[float], list[int]]] = {}
-        self._near = near
-        boxes = ((i, page.pieces[i].box) for i in near.keys() & idle)
-        self.middles = {i: ((x0 + x1) / 2, (y0 + y1) / 2) for i, (x0, y0, x1, y1) in boxes}
-        self._idle = {i: TALL * page.pieces[i].extent for i in near.keys() & idle}
-        for start in self._idle:
-            if start in self.of:
-                continue
-            its: tuple[list[float], list[int]] = [], []
-            row = _joined(near, start)
-            self.of.update((i, its) for i in row)
-            for tall, i in sorted((self._idle[i], i) for i in row if i in self._idle):
-                its[0].append(tall)
-                its[1].append(i)
-
-    def beside(self, pieces: Sequence[int], extent: float) -> int:
-        """How many idle strokes, large enough for one of some extent [pixels], some strokes stand in a row with."""
-        large = sum(len(tall) - bisect_right(tall, extent) for tall, _ in self._rows(pieces))
-        return large and large - sum(extent < self._idle.get(i, 0.0) for i in pieces)
-
-    def idle(self, pieces: Sequence[int], extent: float) -> list[int]:
-        """Those strokes."""
-        large = (i for tall, its in self._rows(pieces) for i in its[bisect_right(tall, extent) :])
-        return [i for i in large if i not in pieces]
-
-    def _rows(self, pieces: Sequence[int]) -> Collection[tuple[list[float], list[int]]]:
-        """The rows that some strokes stand in."""
-        return {id(row): row for i in pieces if (row := self.of.get(i))}.values()
-
-    def near_idle(self, pieces: Sequence[int]) -> list[int]:
-        """The idle strokes next to some strokes."""
-        return [j for i in pieces for j in self._near.get(i, ()) if j in self._idle and j not in pieces]
-
-
-def _boxes_near(p: Piece, q: Piece, reach: float) -> bool:
-    (a, b, c, d), (e, f, g, h) = p.box, q.box
-    return e < c + reach and f < d + reach and g > a - reach and h > b - reach
-
-
-def _measured(page: Page, bar: Fitted, idle: Sequence[Piece]) -> set[int]:
-    """A line and the small marks at its ends, if there is one at either end, that means nothing else, and none between
-    them: their pieces."""
-    ends = bar.outline[[0, -1]]
-    long = math.dist(*ends.tolist())
-    its = [page.pieces[i] for i in bar.pieces]
-    near = [
-        q
-        for q in idle
-        if q.extent < MARK * long and q not in its and any(_boxes_near(p, q, AT_END * long) for p in its)
-    ]
-    if len(near) < 2:
-        return set()
-    inks = [page.strokes.samples[q.stroke] for q in near]
-    at = np.array(
-        [np.hypot(*(ink[:, None] - ends).transpose(2, 0, 1)).min(axis=0) < AT_END * long for ink in inks]
-    )
-    (ax, ay), (ux, uy) = ends[0], (ends[1] - ends[0]) / max(long, 1e-9)
-    off = np.array([np.abs((ink[:, 1] - ay) * ux - (ink[:, 0] - ax) * uy).min() for ink in inks])
-    there, reach = np.asarray(at.any(axis=1)), ON * np.array([q.extent for q in near])
-    if not (at.any(axis=0).all() and (there | (off > reach)).all()):
-        return set()
-    return {*bar.pieces, *(q.index for q, end in zip(near, there, strict=True) if end)}
