@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -13,7 +14,16 @@ from sketch.pieces import Page, Piece
 from sketch.scoring import PARAMETER, Fitted, misfit_of
 from sketch.typing import Array
 
-__all__ = ["ASIDE", "LIFT", "line_of_any_course", "read_bar", "read_bar_of_two", "read_line"]
+__all__ = [
+    "ASIDE",
+    "LIFT",
+    "bars_again",
+    "line_of_any_course",
+    "read_bar",
+    "read_bar_of_two",
+    "read_line",
+    "read_line_gone_over",
+]
 
 OPEN = 0.3  # of its length: how far apart the ends of an open line are at least
 MOST_BENDS = 5  # sides of a bar, at most
@@ -65,15 +75,31 @@ def line_of_any_course(piece: Piece) -> Array | None:
     return course(piece.points, THIN * piece.length)
 
 
+def read_line_gone_over(piece: Piece) -> Fitted | None:
+    """A straight bar that the pen went forth and back along. None for a stroke that goes once."""
+    if not piece.retraces:
+        return None
+    scale = piece.extent / 2
+    bowed = 0.5 * (piece.across / (STRAIGHT * scale)) ** 2
+    cost = RARE + 4 * PARAMETER + misfit_of(piece, piece.across**2, scale) + bowed + _again(piece)
+    return _bar((piece.index,), cost, np.array(piece.reach))
+
+
+def _again(piece: Piece) -> float:
+    """Nats to say what of a straight line's stroke goes over it again."""
+    once = math.dist(*piece.reach) / piece.length if piece.retraces else 1.0
+    return RETRACE * piece.observations * (1 - once)
+
+
 def read_bar_of_two(page: Page, first: Piece, second: Piece) -> Fitted | None:
     """A straight bar in two strokes: one goes on where the other ends, or over it once more.
 
     None where they are not in line, or far apart; and where a small ring joins them: these are two rods.
     """
-    (ax, ay), (bx, by) = first.ends
+    (ax, ay), (bx, by) = first.reach
     chord = math.hypot(bx - ax, by - ay)
     ux, uy = (bx - ax) / chord, (by - ay) / chord
-    at = [((x - ax) * ux + (y - ay) * uy, (y - ay) * ux - (x - ax) * uy) for x, y in second.ends]
+    at = [((x - ax) * ux + (y - ay) * uy, (y - ay) * ux - (x - ax) * uy) for x, y in second.reach]
     (low, off), (high, away) = sorted(at)
     long = max(chord, high) - min(0.0, low)
     lift = max(low - chord, -high, 0.0)  # what lacks between them
@@ -92,7 +118,7 @@ def read_bar_of_two(page: Page, first: Piece, second: Piece) -> Fitted | None:
     spread = np.einsum("s,sni,snj->ij", weights, from_middle, from_middle)
     squares, axes = np.linalg.eigh(spread)
     along = axes[:, 1]
-    reaches = np.sort((np.array([*first.ends, *second.ends]) - middle) @ along)[[0, -1]]
+    reaches = np.sort((np.array([*first.reach, *second.reach]) - middle) @ along)[[0, -1]]
     line = middle + reaches[:, None] * along
     square, count = float(squares[0]), first.observations + second.observations
     lacking = GAP * count * lift / long + RETRACE * count * max(again, 0.0) / long
@@ -100,10 +126,24 @@ def read_bar_of_two(page: Page, first: Piece, second: Piece) -> Fitted | None:
     bowed = 0.5 * square / (STRAIGHT * scale) ** 2
     # each stroke is off it by its own writer's precision: a letter's bar is no part of a floor's side
     far = off_outline(page.strokes, [first.stroke, second.stroke], line)
-    said = sum(misfit_of(p, its) for p, its in zip((first, second), far, strict=True))
+    said = sum(misfit_of(p, its, p.extent / 2) for p, its in zip((first, second), far, strict=True))
+    lacking += _again(first) + _again(second)
     cost = RARE + 5 * PARAMETER + said + bowed + lacking  # its two ends, and where the pen was lifted
     names = (first.index, second.index)
     return _bar(names, cost, line)
+
+
+def bars_again(page: Page, bar: Fitted, pieces: Sequence[Piece]) -> list[Fitted]:
+    """A bar together with some other pieces, as far as they run along it once more."""
+    others = [p for p in pieces if p.index not in bar.pieces and page.apart(p.index, bar.pieces)]
+    if not others:
+        return []
+    off = off_outline(page.strokes, [p.stroke for p in others], bar.outline)
+    said = [
+        PARAMETER + RETRACE * p.observations + misfit_of(p, square, p.extent / 2)
+        for p, square in zip(others, off, strict=True)
+    ]
+    return bar.together({p.index: nats for p, nats in zip(others, said, strict=True) if nats < p.unread})
 
 
 def _bar(names: tuple[int, ...], cost: float, line: Array) -> Fitted:

@@ -13,9 +13,10 @@ import numpy as np
 from sketch.kernel import Shaft, lent
 from sketch.loose import Chain
 from sketch.pieces import Page, Piece
+from sketch.scoring import Fitted
 from sketch.typing import Array, Point
 
-__all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "in_line", "shafts"]
+__all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "crossing", "in_line", "shafts"]
 
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
 MOST_CHAINS = 16  # chains from one piece that are fitted, the tightest first
@@ -105,22 +106,37 @@ def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:
             yield (p.index, j)
 
 
+def crossing(page: Page, bar: Fitted) -> Iterator[Piece]:
+    """Strokes of other ink that may make an X with a straight bar, given as its reading."""
+    (ax, ay), (bx, by) = bar.outline.tolist()
+    long = math.hypot(bx - ax, by - ay)
+    for q in page.touching(min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)):
+        alike = max(q.length, long) <= UNLIKE * min(q.length, long)
+        if alike and q.index not in bar.pieces and _is_bar(q) and page.apart(q.index, bar.pieces):
+            yield q
+
+
 def in_line(page: Page, p: Piece) -> Iterator[Piece]:
     """Later strokes that go on with a straight one, or over it again: as straight, and nearly the same way."""
-    if not (_is_bar(p) and p.straight < STRAIGHT):
+    if not _is_line(p):
         return
-    (ax, ay), (bx, by) = p.ends
+    (ax, ay), (bx, by) = p.reach
     x0, y0, x1, y1 = p.box
     reach = BESIDE * p.length
     for q in page.touching(x0 - reach, y0 - reach, x1 + reach, y1 + reach):
-        if q.index > p.index and _is_bar(q) and q.straight < STRAIGHT and page.apart(p.index, (q.index,)):
-            (cx, cy), (dx, dy) = q.ends
+        if q.index > p.index and _is_line(q) and page.apart(p.index, (q.index,)):
+            (cx, cy), (dx, dy) = q.reach
             across, along = (
                 (bx - ax) * (dy - cy) - (by - ay) * (dx - cx),
                 (bx - ax) * (dx - cx) + (by - ay) * (dy - cy),
             )
             if abs(across) < ALIKE * abs(along):
                 yield q
+
+
+def _is_line(p: Piece) -> bool:
+    """Whether a stroke goes straight, and perhaps over itself again."""
+    return p.retraces or (_is_bar(p) and p.straight < STRAIGHT)
 
 
 def _is_bar(p: Piece) -> bool:

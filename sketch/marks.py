@@ -14,7 +14,7 @@ from sketch.pieces import Page, Piece
 from sketch.scoring import FREE, PARAMETER, Fitted, meaningless, misfit, misfit_of
 from sketch.typing import Array
 
-__all__ = ["read_arrows", "read_cross", "with_strays"]
+__all__ = ["read_arrows", "read_cross", "read_cross_over", "with_strays"]
 
 # Of an X: two bars that cross.
 CROSS = 6 * PARAMETER  # nats to say its bars
@@ -93,6 +93,20 @@ def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fi
     figure = np.array([a, b, d, a, c, b, c, d, c])
     bars = np.array([a, b, c, d])
     return Fitted("cross", names, cost, bars, model=CROSS, rough=rough, figure=figure)
+
+
+def read_cross_over(bar: Fitted, other: Piece, most: float = math.inf) -> Fitted | None:
+    """An X of a bar that is in two strokes, as its reading says, and one in a single stroke. None as of read_cross."""
+    (a, b), (c, d) = bar.outline.tolist(), other.corners(1)
+    odd = _crossing(a, b, c, d)
+    if odd is None:
+        return None
+    rough = bar.cost - bar.model + misfit_of(other, other.residual[1]) + sum(odd)
+    if CROSS + rough > most:
+        return None
+    names = tuple(sorted((*bar.pieces, other.index)))
+    figure, bars = np.array([a, b, d, a, c, b, c, d, c]), np.array([a, b, c, d])
+    return Fitted("cross", names, CROSS + rough, bars, model=CROSS, rough=rough, figure=figure)
 
 
 def _elsewhere(piece: Piece, bends: int, bar: int, other: tuple[Vertex, Vertex]) -> float:

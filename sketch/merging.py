@@ -1,4 +1,4 @@
-"""What was drawn in parts and read apart, merged: bodies and arrows gone over, and arrows whose shaft was drawn in two.
+"""What was drawn in parts and read apart, merged: bodies and marks gone over, and arrows whose shaft was drawn in two.
 
 That two readings are one thing is known of the pair. The search scores each reading by itself, so it cannot tell;
 what it chose is looked at afterwards.
@@ -19,7 +19,7 @@ from sketch.typing import Array
 
 __all__ = ["Chosen", "merged"]
 
-# of a body's size, or of an arrow's length: two nowhere further apart are one, gone over
+# of a body's size, or of a mark's length: two nowhere further apart are one, gone over
 SAME_PLACE = 0.2
 
 
@@ -41,10 +41,12 @@ class Chosen(NamedTuple):
 
 
 def merged(chosen: list[Chosen]) -> list[Chosen]:
-    """The same explanation with each body and each arrow in one reading, though it was drawn in parts."""
+    """The same explanation with each body and each mark in one reading, though it was drawn in parts."""
     chosen = _bodies_gone_over(chosen)
-    arrows = _arrows_gone_over([c for c in chosen if c.fit.kind == "arrow"])
-    return _with_tails(arrows, [c for c in chosen if c.fit.kind != "arrow"])
+    others = [c for c in chosen if c.fit.kind not in ("arrow", "cross")]
+    crosses = _marks_gone_over([c for c in chosen if c.fit.kind == "cross"])
+    arrows = _marks_gone_over([c for c in chosen if c.fit.kind == "arrow"])
+    return _with_tails(arrows, others + crosses)
 
 
 def _bodies_gone_over(chosen: list[Chosen]) -> list[Chosen]:
@@ -78,19 +80,25 @@ def _in_one_place(a: Fitted, b: Fitted) -> bool:
     )
 
 
-def _arrows_gone_over(arrows: list[Chosen]) -> list[Chosen]:
-    """Some arrows, with those between the same two places joined to the best of them."""
+def _marks_gone_over(marks: list[Chosen]) -> list[Chosen]:
+    """Some arrows, or some crosses, with those between the same places joined to the best of them."""
     whole: list[Chosen] = []
-    for arrow in sorted(arrows, key=lambda c: -c.gain):
-        ends = arrow.fit.outline.tolist()
+    for mark in sorted(marks, key=lambda c: -c.gain):
         for k, kept in enumerate(whole):
-            its = kept.fit.outline.tolist()
-            if max(map(math.dist, ends, its)) < SAME_PLACE * math.dist(*its):
-                whole[k] = kept.along_with(arrow)
+            if _ends_apart(mark.fit, kept.fit) < SAME_PLACE * math.dist(*kept.fit.outline[:2].tolist()):
+                whole[k] = kept.along_with(mark)
                 break
         else:
-            whole.append(arrow)
+            whole.append(mark)
     return whole
+
+
+def _ends_apart(mark: Fitted, other: Fitted) -> float:
+    """How far apart the tails or the tips of two arrows are, or the ends of two crosses' bars, at most [pixels]."""
+    ends, its = mark.outline.tolist(), other.outline.tolist()
+    if mark.kind == "arrow":
+        return max(map(math.dist, ends, its))
+    return max(min(math.dist(p, q) for q in places) for of, places in ((ends, its), (its, ends)) for p in of)
 
 
 def _with_tails(arrows: list[Chosen], others: list[Chosen]) -> list[Chosen]:

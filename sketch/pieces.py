@@ -18,6 +18,8 @@ __all__ = ["Looked", "Page", "Piece"]
 
 SPECK = 1 / 8  # of the canvas: what is drawn on less of it is small, not a page of its own
 DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
+ONCE = 1.2  # of its extent: a straight line that is longer is gone over again; one that is not is 1.15 extents long
+LINE = 0.03  # of its extent: how far across ink is, at most, that goes over one straight line again
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 
 
@@ -43,6 +45,7 @@ class Piece:
             a distance that goes with the size of what is drawn.
         residual: mean squared distance from its best polyline of k segments [pixels²], k from 1.
         vertices: of those polylines: vertices[k, :k + 1].
+        across: root mean square distance from its longer axis [pixels].
         given: of few points in equal steps of length those that the stroke came with, without corners between them.
     """
 
@@ -58,12 +61,32 @@ class Piece:
     observations: float
     residual: list[float]
     vertices: Array
+    across: float
     given: Array | None = None
 
     @property
     def straight(self) -> float:
         """Root mean square distance from a straight line, as a share of its length."""
         return math.sqrt(self.residual[1]) / self.length
+
+    @cached_property
+    def retraces(self) -> bool:
+        """Whether it goes along a straight line, and over that again."""
+        return self.length > ONCE * self.extent and self.across < LINE * self.extent
+
+    @cached_property
+    def reach(self) -> tuple[Point, Point]:
+        """Of a straight line, where it begins and ends: at its ends, if it does not go over itself."""
+        if not self.retraces:
+            return self.ends
+        steps = np.diff(self.points, axis=0)
+        long, halfway = np.hypot(*steps.T)[:, None], self.points[:-1] + steps / 2
+        middle = (long * halfway).sum(axis=0) / long.sum()
+        from_middle = halfway - middle
+        along = np.linalg.eigh((long * from_middle).T @ from_middle)[1][:, 1]
+        at = (self.points - middle) @ along
+        (ax, ay), (bx, by) = (middle + np.outer((at.min(), at.max()), along)).tolist()
+        return (ax, ay), (bx, by)
 
     @cached_property
     def unread(self) -> float:
@@ -261,6 +284,7 @@ def _piece(
         observations=_observations(length, extent, dot),
         residual=residual,
         vertices=vertices,
+        across=across,
     )
 
 

@@ -18,11 +18,11 @@ from itertools import accumulate
 
 import numpy as np
 
-from sketch.bars import read_bar, read_bar_of_two, read_line
-from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, in_line, shafts
+from sketch.bars import bars_again, read_bar, read_bar_of_two, read_line, read_line_gone_over
+from sketch.grouping import WIDE, closing_chains, closing_ink, crosses, crossing, in_line, shafts
 from sketch.kernel import off_outline
 from sketch.loose import Chain, End
-from sketch.marks import read_arrows, read_cross, with_strays
+from sketch.marks import read_arrows, read_cross, read_cross_over, with_strays
 from sketch.outlines import LEAST_AXIS, gone_over, read_borrowing, read_outline
 from sketch.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted, misfit_of
@@ -258,8 +258,14 @@ class Proposals:
             out += fitted(
                 ((*(i for i, _ in way), j), ("borrowing", *way)), partial(read_borrowing, page, way, j, ink)
             )
-        out += _kept(read_bar(p)) + _kept(read_line(p))
-        out += [bar for q in in_line(page, p) for bar in _kept(read_bar_of_two(page, p, q))]
+        out += _kept(read_bar(p)) + _kept(read_line(p)) + _kept(read_line_gone_over(p))
+        beside = list(in_line(page, p))
+        for q in beside:
+            for bar in _kept(read_bar_of_two(page, p, q)):
+                out += [bar, *bars_again(page, bar, beside)]
+                for other in crossing(page, bar):
+                    most = self._said((*bar.pieces, other.index)) + HOPELESS
+                    out += _kept(read_cross_over(bar, other, most))
         if not alone.plain:
             for names in crosses(page, p):
                 most = self._said(names) + HOPELESS
