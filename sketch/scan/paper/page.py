@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import crests, crisp_ink, darkness, link, measure_pieces, pieces
+from sketch.scan.paper.brink import drop_at_edges, drop_table, lit_from_within, table_around
 from sketch.scan.paper.broken import smooth_lines
 from sketch.scan.paper.framed import within_frame
 from sketch.scan.paper.punched import punched
@@ -63,13 +64,15 @@ class Page:
         darkness: 0 is bare paper, 255 is black, shape (h, w); 0 off the paper.
         noise: standard deviation of the bare paper's darkness.
         edge: not 0 off the sheet and near its edge, shape (h, w), or None where the sheet fills the picture.
-        rim: width of the strips along the picture's edges that count as paper [pixels].
+        rim: width of the strips along the picture's edges where the table may be seen [pixels].
+        beside: how dark the darkest line is that may as well be what is beyond the sheet; 0 without any.
     """
 
     darkness: Image
     noise: float
     edge: Image | None = None
     rim: int = 0
+    beside: float = 0.0
 
     def smoothed(self, reach: int) -> Page:
         """The page, smoothed along its lines by `reach` pixels to either side."""
@@ -106,18 +109,24 @@ def read_page(picture: Image) -> Page:
         light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
     # where light changes at an edge its side is known to a small pixel only: taken as on the dark side
     light = cv2.blur(cv2.erode(light, np.ones((3, 3), np.uint8)), (3, 3))
-    light = _enlarged(_less_stains(light, small, reduced), reduced, shape, cv2.INTER_LINEAR)
-    dark = darkness(picture, light, dimmest=DIMMEST, negative=negative)
-    if paper is not None:
-        edge = cv2.dilate(255 - paper, np.ones((5, 5), np.uint8))
-        edge = _enlarged(edge, reduced, shape, cv2.INTER_NEAREST)
-        paper = _enlarged(paper, reduced, shape, cv2.INTER_NEAREST)
-        dark = np.asarray(cv2.min(dark, paper), np.uint8)
-    # a sheet may end so near the picture's edge that no table is seen beyond
-    rim = MARGIN * reduced
-    for strip in (dark[:rim], dark[-rim:], dark[:, :rim], dark[:, -rim:]):
-        strip[...] = 0
-    return Page(dark, _noise(dark, paper, reduced), edge, rim)
+    light = _less_stains(light, small, reduced)
+    within, inside = lit_from_within(light, paper, MARGIN)
+    rim, long = MARGIN * reduced, NOTABLE * (width * height) ** 0.5
+
+    def less(light: Image) -> Image:
+        lit = _enlarged(light, reduced, shape, cv2.INTER_LINEAR)
+        return darkness(picture, lit, dimmest=DIMMEST, negative=negative)
+
+    dark = less(within)
+    if paper is None:
+        noise = _noise(dark, None, reduced)
+        return Page(dark, noise, None, rim, drop_at_edges(dark, rim, _floor(noise), long))
+    edge = cv2.dilate(255 - paper, np.ones((5, 5), np.uint8))
+    edge, paper = (_enlarged(some, reduced, shape, cv2.INTER_NEAREST) for some in (edge, paper))
+    noise = _noise(dark, paper, reduced)
+    places = table_around(small, within, inside, _floor(noise))
+    table, about = (_enlarged(some, reduced, shape, cv2.INTER_NEAREST) for some in places)
+    return Page(dark, noise, edge, rim, drop_table(dark, less(light), table, about, rim, _floor(noise), long))
 
 
 def _balance(colours: Image, paper: Image | None) -> Image | None:
@@ -201,6 +210,11 @@ def _is_blackboard(small: Image) -> bool:
     return percentile(bright, 99.5) > 1.5 * percentile(dark, 99.5)
 
 
+def _floor(noise: float) -> float:
+    """What is darker than this is no bare paper.  noise: of that."""
+    return min(max(LEAST_CONTRAST, 5 * noise), 254)
+
+
 def _noise(darkness: Image, paper: Image | None, step: int) -> float:
     """From one pixel in `step`, each way: there are many."""
     import cv2
@@ -223,7 +237,7 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     """
     import cv2
 
-    floor = min(max(LEAST_CONTRAST, 5 * page.noise), 254)
+    floor = _floor(page.noise)
     dark = page.darkness
     if page.noise > GRAINY:
         dark = np.asarray(cv2.GaussianBlur(dark, (3, 3), 0))
@@ -265,18 +279,22 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
         found.strength[holes] = 0
         left_out += [f"left out {len(holes)} holes along an edge of the sheet"] if len(holes) else []
     held = found.at_edge & (found.span < (FINGER_MARK if frame is None else HUNG) * size)
+    if frame is None and page.edge is not None:  # the sheet bends there, and has a shade along its edge
+        held |= found.wholly(page.edge) & (found.strength < SMUDGE * full)
     faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
     seen = (found.strength >= faintest) & (found.span >= 2 * reach)
     keep = seen & ~held
     if frame is None:
-        left_out += _at_edge(int(np.count_nonzero(seen & held)), int(np.count_nonzero(keep & found.at_edge)))
+        leads = (keep & found.at_edge).any() or page.beside > SMUDGE * full
+        left_out += _at_edge(int(np.count_nonzero(seen & held)), bool(leads))
     return found.without(mask, ~keep), left_out
 
 
-def _at_edge(held: int, kept: int) -> list[str]:
-    """Notes of what is not seen at the edge of the sheet. held, kept: pieces of ink there, left out or not."""
+def _at_edge(held: int, leads: bool) -> list[str]:
+    """Notes of what is not seen at the edge of the sheet.  held: pieces of ink there that are left out.
+    leads: whether other ink is there."""
     notes = [f"left out {held} marks at the edge of the sheet, as of what holds it"] if held else []
-    if kept:
+    if leads:
         notes.append("ink leads to the edge of the sheet: what is drawn along that may be missing")
     return notes
 
@@ -338,6 +356,11 @@ class _Pieces:
     @property
     def span(self) -> NDArray[np.float64]:
         return np.hypot(self.extent[:, 0], self.extent[:, 1])
+
+    def wholly(self, place: Image) -> NDArray[np.bool_]:
+        """Which of them are within what is not 0 of a place, shape (h, w)."""
+        start = np.cumsum(self.area) - self.area
+        return np.asarray(np.minimum.reduceat(place.ravel()[self.pixels], start) > 0)
 
     def without(self, mask: Image, dropped: NDArray[np.bool_]) -> Image:
         mask = mask.copy()

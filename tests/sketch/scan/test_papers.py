@@ -433,3 +433,33 @@ def test_marks_left_out_at_the_edge_of_the_sheet_are_named() -> None:
     cv2.circle(sheet, (500, HEIGHT - 12), 9, (35, 35, 35), 3, cv2.LINE_AA)
     sketch = read_picture(encoded(turned(sheet, 4)[0]))
     assert len(sketch.strokes) == 5 or any("at the edge of the sheet" in note for note in sketch.notes)
+
+
+def floored(beyond: int) -> np.ndarray:
+    """The drawing, and a floor whose middle is so far within the sheet's lower edge [pixels]."""
+    sheet = drawn(ink())
+    cv2.line(sheet, (60, HEIGHT - beyond), (660, HEIGHT - beyond), (40, 40, 40), 4, cv2.LINE_AA)
+    return sheet
+
+
+@pytest.mark.parametrize("desk", [None, 50, 110, 185, 225])
+@pytest.mark.parametrize("beyond", [5, 6, 8, 12])
+def test_a_floor_along_the_edge_is_read_or_named(desk: int | None, beyond: int) -> None:
+    picture = floored(beyond)
+    if desk is not None:
+        picture = np.full((HEIGHT + 160, WIDTH + 200, 3), desk, np.uint8)
+        picture[80:-80, 100:-100] = floored(beyond)
+    noise = np.random.default_rng(5).normal(0, 3, picture.shape)
+    sketch = read_picture(encoded(np.clip(picture + noise, 0, 255).astype(np.uint8)))
+    read = sum(np.ptp(s.points[:, 0]) > 590 for s in sketch.strokes) == 1
+    assert read or any("to the edge of the sheet" in note for note in sketch.notes)
+
+
+@pytest.mark.parametrize("desk", [50, 110])
+def test_a_floor_that_bare_paper_parts_from_a_dark_desk_is_read(desk: int) -> None:
+    picture = np.full((2 * HEIGHT + 160, 2 * WIDTH + 200, 3), desk, np.uint8)
+    picture[80:-80, 100:-100] = cv2.resize(floored(6), None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC)
+    noise = np.random.default_rng(6).normal(0, 3, picture.shape)
+    sketch = read_picture(encoded(np.clip(picture + noise, 0, 255).astype(np.uint8)))
+    assert sorted(np.ptp(s.points[:, 0]) for s in sketch.strokes)[-1] == pytest.approx(1200, abs=12)
+    assert len(sketch.strokes) == 5
