@@ -63,7 +63,7 @@ def drop_table(
     import cv2
 
     np.minimum(darkness, 255 - table, out=darkness)
-    along = drop_at_edges(darkness, rim, floor, long)
+    along = drop_at_edges(darkness.copy(), rim, floor, long)
     dark = np.asarray(cv2.max(table, cv2.min(_darker(darkness, floor), about)), np.uint8)
     whole = cv2.copyMakeBorder(dark, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=(255,))
     cv2.floodFill(whole, None, (0, 0), (GONE,), flags=8)

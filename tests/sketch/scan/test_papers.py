@@ -463,3 +463,12 @@ def test_a_floor_that_bare_paper_parts_from_a_dark_desk_is_read(desk: int) -> No
     sketch = read_picture(encoded(np.clip(picture + noise, 0, 255).astype(np.uint8)))
     assert sorted(np.ptp(s.points[:, 0]) for s in sketch.strokes)[-1] == pytest.approx(1200, abs=12)
     assert len(sketch.strokes) == 5
+
+
+@pytest.mark.parametrize("wide", range(2, 20, 2))
+def test_a_strip_of_the_desk_along_the_pictures_edge_is_not_drawn(wide: int) -> None:
+    picture = np.full((2 * HEIGHT, 2 * WIDTH, 3), 45, np.uint8)
+    sheet = cv2.resize(drawn(ink()), None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC)
+    picture[wide:] = sheet[: 2 * HEIGHT - wide]
+    noise = np.random.default_rng(7).normal(0, 3, picture.shape)
+    assert len(read_picture(encoded(np.clip(picture + noise, 0, 255).astype(np.uint8))).strokes) == 4
