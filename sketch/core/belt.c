@@ -13,6 +13,7 @@ static const double DRAWN = 0.9;   /* and after */
 static const double OPEN = 0.25; /* of those that must meet paper beyond it: a ring stands out from a scribble, */
 static const double CLEAR = 0.8; /* and with those within it; */
 static const double BLOT = 0.6;  /* one that is filled must stand out by so much, and be as round */
+static const double ROUND = 0.4; /* one that other ink is all around must be as round, and clear by its hole alone */
 static const double BEYOND = 1.1, WITHIN = 0.8; /* pen widths from the belt's middle to the paper beside it */
 static const double OUT_OF_ROUND = 0.09; /* deviation from a circle, a share of its radius: a square has 0.11 */
 static const double LEAST_ROUND = -0.1;
@@ -130,8 +131,11 @@ INK_API int32_t ink_belt(const uint8_t *mask, int32_t width, int32_t height, con
     within /= RAYS;
     const double roundness = 1 - sqrt(uneven / RAYS) / radius / OUT_OF_ROUND;
     const int clear = within + beyond >= CLEAR || (beyond > BLOT && roundness > BLOT);
-    if (beyond < OPEN || !clear || roundness < LEAST_ROUND) return 0;
-    out[0] = roundness;
+    const int open = beyond >= OPEN && clear && roundness >= LEAST_ROUND;
+    /* a pivot's ring among the ends of rods leaves no paper beside it, but a hole that is whole and round */
+    if (!open && (within < CLEAR || roundness < ROUND)) return 0;
+    /* of one that is filled only half is to be seen: its outer rim */
+    out[0] = within + beyond < CLEAR ? roundness / 2 : roundness;
     out[1] = middle[0];
     out[2] = middle[1];
     out[3] = radius;

@@ -7,7 +7,7 @@ into it on one side and comes out on another is then a crossing, as wide as the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -31,6 +31,7 @@ WITHIN = 0.2  # of roundness: what is less round by more than a ring around it, 
 CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to be chance
 ALL_ROUND = 0.7  # of its length: an edge that has so much of the ring is the ring
 BLOT = 0.75  # pen widths from the paper: ink that is further from it is a hole that closed, and no line
+PEAK = SMALLEST + 0.5  # pen widths from the paper: the middle of the smallest ring whose hole closed
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
 
@@ -92,7 +93,28 @@ def _seeds(
         box = cv2.boundingRect(way)
         seeds.append(_middle_and_radius(way, np.sqrt((cv2.contourArea(way) + len(way)) / np.pi)))
         seeds.append(_middle_and_radius(way, max(box[2:]) / 2))
+        seeds += _peaks(distance, box, pen)
     return [seed for seed in seeds if SMALLEST * pen / 2 <= seed[2] <= LARGEST * pen]
+
+
+def _peaks(distance: NDArray[Any], box: Sequence[int], pen: float) -> list[tuple[float, float, float]]:
+    """Where ink is deepest in a box: a ring whose hole closed, however far the lines go on that run into it.
+
+    box: its left, top, width and height [pixels].
+    """
+    import cv2
+
+    left, top, width, height = box
+    within = distance[top : top + height, left : left + width]
+    seeds: list[tuple[float, float, float]] = []
+    if within.max() <= PEAK * pen:
+        return seeds
+    deep = (within > PEAK * pen).view(np.uint8)
+    for way in cv2.findContours(deep, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]:
+        x, y, width, height = cv2.boundingRect(way)
+        _, depth, _, at = cv2.minMaxLoc(within[y : y + height, x : x + width])
+        seeds.append((float(left + x + at[0]), float(top + y + at[1]), depth - pen / 2))
+    return seeds
 
 
 def _beside(places: NDArray[Any], apart: float) -> list[tuple[int, int]]:

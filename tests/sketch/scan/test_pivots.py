@@ -55,6 +55,34 @@ def test_a_ring_with_hardly_a_hole_is_one_among_the_lines_of_its_rod(pen: float)
 
 
 @pytest.mark.parametrize("pen", [4.0, 5.5])
+@pytest.mark.parametrize("angle", [0.1, 0.2])
+def test_a_ring_that_the_ends_of_its_rods_are_all_around_is_one(pen: float, angle: float) -> None:
+    """No paper is beside it: its hole alone shows it."""
+    radius = 1.35 * pen
+
+    def rod(turn: float) -> Line:
+        end = [(60.0, -2.0), (-2.0, -2.0), (-2.0, 2.0), (60.0, 2.0)]
+        x, y, c, s = *(pen * np.array(end)).T, np.cos(turn), np.sin(turn)
+        return [(250 + float(a), 200 + float(b)) for a, b in zip(x * c - y * s, x * s + y * c, strict=True)]
+
+    ((middle, size),) = rings([circle(250, 200, radius), rod(angle), rod(np.pi - angle)], pen)
+    assert np.hypot(*(middle - [250, 200])) < 0.3 * pen
+    assert abs(size - radius) < 0.3 * pen
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
+@pytest.mark.parametrize("far", [40.0, 60.0])
+def test_a_ring_whose_hole_two_sides_closed_is_where_their_ink_is_deepest(pen: float, far: float) -> None:
+    """The sides lie on each other to the right of it, so that thick ink goes on there."""
+    sides: list[Line] = [
+        [(100, 200 - 0.5 * pen), (200 + far, 200)],
+        [(100, 205), (200 + far, 200 + 0.6 * pen)],
+    ]
+    ((middle, _),) = rings([circle(200, 200, 1.2 * pen), *sides], pen)
+    assert np.hypot(*(middle - 200)) < 0.5 * pen
+
+
+@pytest.mark.parametrize("pen", [4.0, 5.5])
 def test_rods_that_end_in_their_rings_are_rods_however_many_they_are(pen: float) -> None:
     """Their short sides are ink of the rings, or lost in it; each long side has its other beside it."""
     beam: Line = [(20, 30), (500, 32), (498, 84), (22, 82), (20, 30)]
