@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.context import LARGE
 from sketch.pieces import Page, Piece
 from sketch.scan.binding import coarseness, course_length
 from sketch.scan.skeleton.graph import Ink
@@ -123,10 +124,14 @@ class Prices:
         said = min(c.model, c.cost)  # what is commoner than its kind costs less
         # what is off its ink is said as finely as that ink is said freely, in more strokes maybe, never less finely
         gain = taken.freely - said - (c.cost - said) * taken.finer
-        # the strokes of a cross, and of an arrow in one stroke, are judged as a whole
-        if gain <= least or c.kind == "cross" or (c.kind == "arrow" and len(c.pieces) == 1):
+        # the strokes of a mark, and of an arrow in one stroke, are judged as a whole
+        if gain <= least or self._is_mark(c) or (c.kind == "arrow" and len(c.pieces) == 1):
             return gain
         return gain - self._coarse(c, taken)
+
+    def _is_mark(self, c: Fitted) -> bool:
+        """Whether it is an X as large as people draw them on bodies: a larger one has to be drawn as one."""
+        return c.kind == "cross" and float(np.ptp(c.outline, axis=0).max()) < LARGE * self._page.size
 
     def _coarse(self, c: Fitted, taken: Taken) -> float:
         """Nats that a reading owes where it says ink less precisely than the smallest thing that it may be part of

@@ -57,6 +57,18 @@ def test_a_ball_on_the_tip_of_a_ramp_is_no_figure_of_eight(pen: float) -> None:
 
 
 @pytest.mark.parametrize("pen", PENS)
+def test_a_ball_on_an_overshot_corner_is_no_large_x_with_a_loop(pen: float) -> None:
+    apex, left, right, over = np.array([255.0, 200]), np.array([80.0, 360]), np.array([440.0, 364]), 70.0
+    first, last = ((over * (apex - foot) / np.hypot(*(apex - foot))) + apex for foot in (left, right))
+    turn = np.linspace(-1.8, 2 * np.pi - 1.1, 70)
+    spiral = 36 * (1 - 0.4 * np.maximum(turn - turn[0] - 2 * np.pi + 0.2, 0))  # its end is a tail inside
+    middle = last - np.array([10.0, 36])
+    ball = middle[:, None] + spiral * (np.cos(turn), np.sin(turn))
+    scene = read([[(x, y) for x, y in line] for line in ([first, left, right, last], ball.T)], pen)
+    assert kinds(scene) == ["3 sides", "circle"]
+
+
+@pytest.mark.parametrize("pen", PENS)
 def test_a_box_without_a_lid_has_the_bottom_of_the_box_on_it(pen: float) -> None:
     upper: Line = [(130, 80), (370, 84), (366, 200), (134, 196), (130, 80)]
     lower: Line = [(160, 197), (163, 320), (330, 322), (333, 199)]
