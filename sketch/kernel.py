@@ -120,8 +120,8 @@ class ClosedFit(NamedTuple):
         corners: of those polygons [pixels], (SIDES + 1, SIDES, 2).
         rectangle: the nearest to the quadrilateral [pixels], (4, 2).  extra: what it adds to residual[4]; infinite
             for none.
-        turning: how much of the ink's turning is at the corners of the k-gon, from 0, where it turns evenly, to 1; of
-            the best with 5 to 7 sides, and 0 of all others.
+        turning: how much of the ink's turning is at the corners of the k-gon, from 0, where it turns evenly, to 1; 0 of
+            those with more than 7 sides.
     """
 
     mean: Array

@@ -20,7 +20,8 @@ from sketch.typing import Array
 __all__ = ["LEAST_AXIS", "gone_over", "read_borrowing", "read_outline"]
 
 MOST_SIDES = 12
-FEWEST, MOST = 5, 7  # sides of polygons that are nearly round, as in core/outline.c
+FEWEST = 5  # sides of polygons that are nearly round
+MOST = 7  # sides of polygons beside whose corners something round turns more; as in core/outline.c
 ROUND = 31.0  # nats that a round outline is rarer than its three parameters say
 CORNER = 4.0  # nats to say a corner's coordinate, given those before: less than a free parameter
 USUAL = {3: 2.0, 4: 4.0}  # nats that triangles and quadrilaterals are commoner than other polygons
@@ -39,7 +40,7 @@ CORNERED = 0.12  # of a step: how uneven they usually are around something with 
 STEPPING = 0.3  # of the logarithm of how uneven steps are: how much it differs from EVEN_STEPS' or CORNERED's
 CHANCE = 3.0  # nats that all corners lie halfway between points, or at them: steps are even then
 ELLIPSE = 7.5  # nats that an ellipse takes beyond a circle: with 1.6 times as long as wide it is either
-FREEFORM = 32.0  # nats that an outline of any course, a hill or a cloud, is rarer than a polygon
+FREEFORM = 24.0  # nats that an outline of any course, a hill or a cloud, is rarer than a polygon
 ARC = 9.0  # nats to say each of the arcs that an outline of any course goes in: a bow beside the corner
 WIDE = 0.25  # of its ink: where more is missing, nobody can say which course it took; as in core/sides.c
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.h
@@ -140,18 +141,27 @@ def _read(
     steps, even, cornered = _stepping(points, ellipse)
     for k in range(3, MOST + 1):
         total[k] += cornered
-    sides, second = sorted(range(3, MOST_SIDES + 1), key=total.__getitem__)[:2]
-    evenly, straight = _turning(fit, sides, max(steps, min(sum(map(len, parts)) - len(parts), MANY)))
+    between = max(steps, min(sum(map(len, parts)) - len(parts), MANY))
+    many = min(range(FEWEST, MOST_SIDES + 1), key=total.__getitem__)
+    evenly, straight = _turning(fit, many, between)
+    # what turns beside the corners speaks against few of them, where there are points enough to see it
+    off = [straight] * (MOST_SIDES + 1)
+    off[3], off[4] = (0.0 if points else _turning(fit, k, between)[1] for k in (3, 4))
+    told = total if points else [sum(nats) for nats in zip(total, off, strict=True)]
+    sides, second = sorted(range(3, MOST_SIDES + 1), key=told.__getitem__)[:2]
+    if sides < FEWEST:
+        evenly = 0.0
     out = _round(rounded, ellipse, fitted, gaps + evenly + even)
     if math.isfinite(fit.cost[sides]):
-        outline, ahead = fit.vertices(sides), (second, total[second] - total[sides])
-        cost = total[sides] + besides + straight
+        outline = fit.vertices(sides)
+        ahead = second, told[second] - told[sides]
+        cost = total[sides] + besides + off[sides]
         model, far = 2 * sides * CORNER, rough[sides]
         out.append(fitted("polygon", cost=cost, outline=outline, model=model, rough=far, next=ahead))
     if math.isfinite(fit.extra):
-        off = fit.residual[4]
-        far = rough[4] + misfit(off + fit.extra, count) - misfit(off, count)
-        cost = far + BOX + fit.lacks[4] + besides + cornered
+        square = fit.residual[4]
+        far = rough[4] + misfit(square + fit.extra, count) - misfit(square, count)
+        cost = far + BOX + fit.lacks[4] + besides + cornered + off[4]
         out.append(fitted("rectangle", cost=cost, outline=fit.rectangle, model=BOX, rough=far))
     least = min(f.cost for f in out)
     if (
@@ -168,11 +178,11 @@ def _read(
 def _turning(fit: ClosedFit, sides: int, steps: int) -> tuple[float, float]:
     """Nats to say how much of the ink's turning is at a polygon's corners, of something round and of the polygon.
 
-    Of few corners the distances tell enough, and beside many nothing is left to turn.
+    Beside many corners nothing is left to turn.
     steps: between the points of its line, MANY where there are more: all turning is at these, and as many of them as
         the polygon has corners may be its corners.
     """
-    if not FEWEST <= sides <= MOST or not math.isfinite(fit.cost[sides]):
+    if sides > MOST or not math.isfinite(fit.cost[sides]):
         return 0.0, 0.0
     off = 1 - min(max(float(fit.turning[sides]), 0.0), 1.0)
     off = min(off * (1 - sides / MANY) / (1 - sides / steps), 1 - EVENLY)

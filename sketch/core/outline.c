@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { FEWEST = 5, MOST = 7 }; /* sides of a polygon that may be taken for something round, and is none */
+enum { MOST = 7 }; /* sides of a polygon beside whose corners something round turns more */
 
 typedef struct {
     double mean[2];
@@ -204,8 +204,8 @@ static double find_lifts(const double *z, const int32_t *part_end, int parts, do
  * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds;
  * residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed sides, flat
  * corners and short sides, and lacks[k]: nats for what of it nobody drew; vertices[k][SIDES][2] [pixels]; rectangle: what the nearest adds to residual[4], infinite for none,
- * and its corners (8) [pixels]; turned[k]: how much of the ink's turning is at the corners of the k-gon, for the best of those with
- * FEWEST to MOST sides. */
+ * and its corners (8) [pixels]; turned[k]: how much of the ink's turning is at the corners of the k-gon, of up to MOST
+ * sides. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
                         double observations, double side, double hopeless, double undrawn, double *frame,
                         double *length, double *round, double *residual, double *cost, double *lacks, double *vertices,
@@ -244,9 +244,6 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     Polygon found[SIDES + 1];
     double p = hypot(f.back[0], f.back[2]), q = hypot(f.back[1], f.back[3]);
     best_polygons(&ink, &r, &longer, p > LONG * q ? sqrt(sqrt(p / q)) : 1, found);
-    int best = FEWEST;
-    for (int k = FEWEST; k <= MOST; k++)
-        if (found[k].cost + k * side < found[best].cost + best * side) best = k;
     for (int k = 0; k <= SIDES; k++) {
         double *v = vertices + 2 * SIDES * k;
         cost[k] = found[k].cost - found[k].undrawn;
@@ -255,7 +252,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         turned[k] = 0;
         if (!isfinite(cost[k])) continue;
         polygon_corners(found + k, v);
-        if (k == best) turned[k] = turning(&r, v, k);
+        if (k <= MOST) turned[k] = turning(&r, v, k);
         for (double *c = v; c < v + 2 * k; c += 2) {
             double x = c[0], y = c[1];
             c[0] = f.mean[0] + f.back[0] * x + f.back[1] * y;
