@@ -18,7 +18,7 @@ from sketch.scan.skeleton.graph import Graph, build_graph
 from sketch.scan.skeleton.ridge import centre_on_ink
 from sketch.scan.skeleton.stretches import Stretches
 from sketch.scan.strokes.crossed import crossed
-from sketch.scan.strokes.faces import standing
+from sketch.scan.strokes.faces import standing, with_all_ink
 from sketch.scan.strokes.hidden import going_on
 from sketch.scan.strokes.overlaps import overlapping
 from sketch.scan.strokes.prices import lines
@@ -78,10 +78,10 @@ def _strokes(chains: Chains, seen: Seen) -> list[Points]:
     likeliest = [_drawn(way, seen) for way in plain]
     if ways.is_net:
         return _points(likeliest)
-    others = [_drawn(way, seen) for way in ways.others()]
+    stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
+    others = [_drawn(way, seen) for way in with_all_ink(ways.others(), stretches)]
     others += [_drawn(way, seen) for way in _in_tangles(rings.tangles, likeliest + others, pen)]
     planes = [Subdivision(edges, rings.round, pen) for edges in (drawn.edges, bridged(drawn, pen))]
-    stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
     others += [_drawn(way, seen) for way in standing(planes, stretches)]
     others += with_tails(likeliest + others, pen * seen.scale)
     overlaps = [_drawn(way, seen) for way in overlapping(planes[1], rings.round, stretches)]

@@ -6,6 +6,10 @@ But each encloses its own piece of paper.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+
 from sketch.scan.skeleton.stretches import Stretches
 from sketch.scan.strokes.subdivision import Subdivision
 from sketch.scan.strokes.ways import Way
@@ -28,6 +32,17 @@ def standing(planes: list[Subdivision], stretches: Stretches) -> list[Way]:
         for way in _standing(plane, stretches):
             found.setdefault(frozenset(way.ink), way)
     return list(found.values())
+
+
+def with_all_ink(ways: list[Way], stretches: Stretches) -> list[Way]:
+    """Some ways, and each closed one that runs along other ink also with all of that."""
+    out = list(ways)
+    for way in ways:
+        if len(way.points) > 3 and np.array_equal(way.points[0], way.points[-1]):
+            more = sorted(stretches.beside(way.points) - way.ink.keys())
+            if more:
+                out.append(replace(way, ink={**way.ink, **{name: stretches.ink[name] for name in more}}))
+    return out
 
 
 def _standing(plane: Subdivision, stretches: Stretches) -> list[Way]:

@@ -12,6 +12,7 @@ import numpy as np
 from sketch.scan.binding import nearest
 from sketch.scan.skeleton.graph import RING, End, Graph
 from sketch.scan.skeleton.junctions import LONELY, Branch, Junction, Pairs, turn_cost
+from sketch.scan.strokes.closing import SMOOTH, ends_cost
 from sketch.scan.strokes.courses import Course, Links
 from sketch.typing import Points
 
@@ -75,8 +76,8 @@ class Layout:
         for (e, side), enter in pairwise([*way, way[0]] if closed else way):
             leave = (e, 1 - side)
             via = np.empty((0, 2))
-            if leave in self.junction_of:
-                junction = self.junction_of[leave]
+            junction = self.junction_of.get(leave)
+            if junction is not None and junction is self.junction_of.get(enter):
                 i, j = (
                     next(k for k, b in enumerate(junction.branches) if b.end == end) for end in (leave, enter)
                 )
@@ -133,8 +134,17 @@ class Layout:
                 total += LONELY * (here is not None)
             else:
                 there = self.branch_of.get(course.steps[(k + 1) % count])
-                total += min(turn_cost(here, there), LONELY) if here and there else 0.0
+                if here and there:
+                    turn = min(turn_cost(here, there), LONELY)
+                    total += self._cut(here, there) if course.closed and turn > SMOOTH else turn
         return total + LONELY * (not course.closed and course.steps[0] in self.branch_of)
+
+    def _cut(self, here: Branch, there: Branch) -> float:
+        """What an outline's corner at a junction costs [rad²]: that it turns is said with its shape, but what goes
+        straight on there has to end."""
+        branches = self.junction_of[here.end].branches
+        others = [b for b in branches if b is not here and b is not there]
+        return ends_cost(sum(any(turn_cost(a, b) < SMOOTH for b in others) for a in (here, there)))
 
     def is_crumb(self, course: Course) -> bool:
         """Whether a course lies within the ink of the junctions at its ends."""

@@ -58,7 +58,7 @@ class Prices:
         self._ways, self._page, self._ends, self._pen = ways, page, ends, pen
         self._taken: dict[tuple[int, ...], Taken | None] = {}
         self._known: dict[Taken, tuple[Points, NDArray[np.int32], Points]] = {}
-        self._free: dict[int, float] = {}  # nats to say each stretch of ink freely, as a stroke of its own,
+        self.free: dict[int, float] = {}  # nats to say each stretch of ink freely, as a stroke of its own,
         self._strange: dict[int, float] = {}  # and of these, those for being one
         self._fine: dict[int, float] = {}  # observations that it is worth in the likeliest ways
         self._scale: dict[int, float] = {}  # [pixels] of the smallest thing that it may be part of
@@ -71,7 +71,7 @@ class Prices:
             if k in alone.pieces:
                 p = alone.pieces[k]
                 self._strange[name] = self._strangeness(p)
-                self._free[name] = p.unread - STRANGE + self._strange[name] + STRAIN * count
+                self.free[name] = p.unread - STRANGE + self._strange[name] + STRAIN * count
         for p in page.pieces.values():
             stretches = ways[p.index].ink
             self._scale.update((name, min(p.scale, self._scale.get(name, np.inf))) for name in stretches)
@@ -85,7 +85,7 @@ class Prices:
         p = self._page.pieces.get(way)
         if p is None:
             return 0.0
-        apart = sum(self._free.get(name, 0.0) for name in self._ways[way].ink)
+        apart = sum(self.free.get(name, 0.0) for name in self._ways[way].ink)
         return apart - (p.unread - STRANGE + self._strangeness(p)) - STRAIN * self._ways[way].strain
 
     def _strangeness(self, p: Piece) -> float:
@@ -107,7 +107,7 @@ class Prices:
         if not kept:
             return None
         least = MOSTLY * sum(map(len, ink.values()))
-        freely = sum(self._free.get(name, 0.0) for name in ink)
+        freely = sum(self.free.get(name, 0.0) for name in ink)
         freely -= sum(self._strange.get(name, 0.0) for name in tails)
         said = sum(self._fine.get(name, 0.0) for name in ink)
         return Taken(
@@ -150,7 +150,7 @@ class Prices:
             ends = np.cumsum([len(points) for points in some], dtype=np.int32)
             worth = [
                 # nothing drawn is smaller than the pen
-                (max(self._scale[name], self._pen / 2), self._fine.get(name, 0.0), self._free.get(name, 0.0))
+                (max(self._scale[name], self._pen / 2), self._fine.get(name, 0.0), self.free.get(name, 0.0))
                 for name in names
             ]
             self._known[taken] = np.concatenate(some), ends, np.array(worth)

@@ -19,10 +19,11 @@ from sketch.context import Context
 from sketch.kernel import depth
 from sketch.pieces import Page
 from sketch.proposals import HOPELESS, Proposals, Proposed, proposing
+from sketch.scan.binding import course_length
 from sketch.scan.strokes.prices import Prices
+from sketch.scan.strokes.together import Together
 from sketch.scan.strokes.ways import Way
 from sketch.scoring import Fitted
-from sketch.search import Packing, part
 from sketch.typing import Array
 
 __all__ = ["settle"]
@@ -54,7 +55,9 @@ def settle(
     readings = _priced(proposals, prices)
     left = _left_over(likeliest, prices, ends)
     ahead = _ahead(readings, len(likeliest) + len(others))
-    best = _best_together(proposals.page, readings, left, ahead)
+    lengths = {name: course_length(points) / pen for way in ways for name, points in way.ink.items()}
+    together = Together(readings.own, left, prices.free, lengths)
+    best = _best_together(proposals.page, readings, together, ahead)
     return [ways[i] for k in best for i in readings.groups[k]]
 
 
@@ -112,19 +115,16 @@ def _ahead(readings: _Readings, first: int) -> Array:
     return ahead
 
 
-def _best_together(
-    page: Page, readings: _Readings, left: list[tuple[tuple[int, ...], float]], ahead: Array
-) -> list[int]:
+def _best_together(page: Page, readings: _Readings, together: Together, ahead: Array) -> list[int]:
     """The readings that gain the most as they stand around one another, looked for from two beginnings: what each
     gains by itself, and that with what others may say for it."""
     proposed, context = readings.proposed, Context()
-    disjoint = _Disjoint(readings.own, left)
     gains = np.array(proposed.gains)
     best, most = list[int](), -math.inf
     for expected in (gains, gains + ahead) if ahead.any() else (gains,):
         chosen, told = list[int](), list[list[float]]()
         for _ in range(ROUNDS):
-            last, (chosen, saved) = chosen, disjoint.best(expected.tolist())
+            last, (chosen, saved) = chosen, together.best(expected.tolist())
             if chosen == last:
                 break
             told.append(_told(context, page, proposed, chosen))
@@ -133,27 +133,6 @@ def _best_together(
             # of two sets each may speak for the other: what all of them say in the mean speaks for one
             expected = np.mean(told, axis=0)
     return best
-
-
-class _Disjoint:
-    """The sets of readings of which each stretch of ink is in one at most, or left over with others."""
-
-    def __init__(self, own: list[tuple[int, ...]], left: list[tuple[tuple[int, ...], float]]) -> None:
-        """own: of each reading the stretches.  left: stretches that may be left over together, and what that saves."""
-        self._count, self._saved = len(own), [saved for _, saved in left]
-        self._inks = own + [ink for ink, _ in left]
-        first_of: dict[int, list[int]] = {}
-        for k, ink in enumerate(self._inks):
-            first_of.setdefault(ink[0], []).append(k)
-        self._leading, self._packing = list(first_of.values()), Packing()
-
-    def best(self, gains: list[float]) -> tuple[list[int], float]:
-        """The set that gains the most, given the gains of the readings; and what is saved by what it leaves over."""
-        worth = gains + self._saved
-        parts = [part([self._inks[k] for k in some], [worth[k] for k in some]) for some in self._leading]
-        packed = [self._leading[p][k] for p, k in self._packing.best(parts)]
-        saved = sum(worth[k] for k in packed if k >= self._count)
-        return [k for k in packed if k < self._count], saved
 
 
 def _told(context: Context, page: Page, proposed: Proposed, chosen: list[int]) -> list[float]:

@@ -16,6 +16,7 @@ import numpy as np
 from sketch.scan.skeleton.graph import Graph, Ink
 from sketch.scan.skeleton.junctions import find_junctions
 from sketch.scan.strokes.closing import Choice, close_outlines
+from sketch.scan.strokes.convex import convex_ways
 from sketch.scan.strokes.courses import Course, Links, follow, through
 from sketch.scan.strokes.layout import Layout
 from sketch.scan.strokes.unlifted import unlifted
@@ -118,6 +119,11 @@ class Ways:
                         continue
                     seen.add(signature)
                     out += [self._way(course, links), *self._closed(course, links)]
+        for around in convex_ways(self._layout, self._inner):
+            course, links = self._layout.along(around, closed=True)
+            if (signature := _signature(course)) not in seen:
+                seen.add(signature)
+                out.append(self._way(course, links))
         return out
 
     def _closed(self, course: Course, links: Links) -> list[Way]:
