@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import cv2
 import numpy as np
 import pytest
@@ -124,3 +126,24 @@ def test_lines_across_a_rope_that_a_ring_holds_are_lines() -> None:
     across: list[Line] = [[(x, 150.0), (x + 3.0, 250.0)] for x in np.linspace(110, 690, 14).tolist()]
     scene = read([rope, *across, circle(60, 200, 9)], 3.0)
     assert kinds(scene).count("rectangle") > 7
+
+
+def rod(a: NDArray[np.float64], b: NDArray[np.float64], wide: float) -> Line:
+    """A rectangle that reaches beyond two places on its axis."""
+    u = (b - a) / np.hypot(*(b - a))
+    side, over = np.array([-u[1], u[0]]) * wide / 2, 0.7 * wide * u
+    corners = [a - over + side, b + over + side, b + over - side, a - over - side]
+    return [(float(x), float(y)) for x, y in [*corners, corners[0]]]
+
+
+@pytest.mark.parametrize("pen", [2.5, 4.0])
+@pytest.mark.parametrize("seed", range(10))
+def test_the_rods_of_a_chain_have_ink_in_common_where_they_are_joined(pen: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    ways = rng.uniform(-0.2, 0.6) + np.cumsum(rng.uniform(-0.7, 0.7, 3))
+    joints = np.cumsum([(0.0, 0.0), *(115 * np.array([np.cos(t), np.sin(t)]) for t in ways)], axis=0)
+    joints += np.array([260, 210]) - (joints.min(axis=0) + joints.max(axis=0)) / 2
+    rods = [rod(a, b, 34) for a, b in pairwise(joints)]
+    scene = read([*rods, *(circle(x, y, 8) for x, y in joints[1:-1].tolist())], pen)
+    assert kinds(scene) == ["rectangle"] * 3
+    assert len(scene.joints) == 2
