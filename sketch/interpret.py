@@ -9,11 +9,11 @@ from collections.abc import Iterable
 import numpy as np
 
 from sim.scene import Joint, Scene, View
-from sketch.bodies import Bodies, Drawn, draw_body, ids
 from sketch.ink import Sketch
-from sketch.pivots import UNSURE, pivots
 from sketch.reading import Reading
-from sketch.tidy import close_gaps, straighten
+from sketch.scene.bodies import Bodies, Drawn, draw_body, ids
+from sketch.scene.pivots import UNSURE, pivots
+from sketch.scene.tidy import close_gaps, straighten
 
 __all__ = ["interpret"]
 

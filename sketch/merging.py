@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sketch.bars import ASIDE, LIFT
 from sketch.kernel import depth
-from sketch.scoring import Fitted
+from sketch.shapes.bars import ASIDE, LIFT
+from sketch.shapes.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["Chosen", "merged"]

@@ -1,13 +1,13 @@
 """Ink → scene: readings of groups of strokes, scored, and the set of them that explains all the ink best.
 
 What is optimized: the length of a description of the page. Every reading of a group of ink says what the
-ink is in fewer nats than saying the ink itself, point by point; that saving is its gain (`sketch.scoring`).
+ink is in fewer nats than saying the ink itself, point by point; that saving is its gain (`sketch.shapes.scoring`).
 The answer is the set of readings, each piece of ink in at most one, with the greatest total gain, found
 exactly (`sketch.search`): no other set of the readings at hand describes the page in fewer nats. It is
 found twice: first from the ink alone, then with what the bodies of the first answer say about the marks on
-and around them (`sketch.context`).
+and around them (`sketch.around.context`).
 
-Readings depend on the ink around them alone (`sketch.proposals`). So a `Recognizer` that gets one stroke more
+Readings depend on the ink around them alone (`sketch.shapes.proposals`). So a `Recognizer` that gets one stroke more
 looks anew at its neighbourhood, and comes to the same scene as one that gets them all at once.
 """
 
@@ -21,23 +21,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim.scene import InputError, Scene
-from sketch.arrows import pointing
-from sketch.context import Context
-from sketch.cutting import things_in
+from sketch.around.arrows import pointing
+from sketch.around.context import Context
+from sketch.around.writing import written
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
-from sketch.letters import Letters
 from sketch.merging import Chosen, merged
 from sketch.overrides import Overrides, forced_reading, normal_overrides
-from sketch.pieces import Page
-from sketch.placing import Placed, placed
-from sketch.proposals import Pick, Proposals, Proposed, proposing
+from sketch.page.cutting import things_in
+from sketch.page.pieces import Page
+from sketch.page.sampling import sampled
 from sketch.reading import Reading, Rival, scored
-from sketch.sampling import sampled
-from sketch.scoring import Fitted
 from sketch.search import Packing, Part, part
-from sketch.writing import written
+from sketch.shapes.letters import Letters
+from sketch.shapes.placing import Placed, placed
+from sketch.shapes.proposals import Pick, Proposals, Proposed, proposing
+from sketch.shapes.scoring import Fitted
 
 __all__ = ["Reading", "Recognition", "Recognizer", "recognize"]
 

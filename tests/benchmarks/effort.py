@@ -92,7 +92,9 @@ def _one_more(sketch: Sketch) -> float:
 
 _MEMORY = """
 import time, tracemalloc, numpy as np
-from sketch import Sketch, Stroke, recognize
+from sketch import Sketch
+from sketch import Stroke
+from sketch import recognize
 from tests.benchmarks.effort import machines, resampled
 recognize(machines(20, 0))
 sketch = Sketch([Stroke(resampled(s.points, 500)) for s in machines(200, 0).strokes])

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch import Recognition, Sketch, Stroke, recognize
-from sketch.pieces import Page
+from sketch.page.pieces import Page
 from sketch.synthetic import HANDS, Hand, arrow, circle, cross, outline
 
 Array = NDArray[np.float64]

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pages import box, kinds, ngon, read
 
-from sketch.outlines import read_outline
-from sketch.pieces import Page
-from sketch.sampling import arced, sampled, unevenness
+from sketch.page.pieces import Page
+from sketch.page.sampling import arced, sampled, unevenness
+from sketch.shapes.outlines import read_outline
 from sketch.synthetic import HANDS, Hand, circle, ellipse, outline
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from pages import measured
 
-from sketch.bars import STRAIGHT, read_bar_of_two
 from sketch.ink import Sketch, Stroke
-from sketch.marks import read_cross
-from sketch.pieces import Page
-from sketch.scoring import meaningless, misfit
+from sketch.page.pieces import Page
+from sketch.shapes.bars import STRAIGHT, read_bar_of_two
+from sketch.shapes.marks import read_cross
+from sketch.shapes.scoring import meaningless, misfit
 
 Point = tuple[float, float]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pages import measured, page
 
 from sketch.kernel import along, beside, course_around, fit_closed, gap, lent, measure, off_outline
-from sketch.loose import LooseEnds
+from sketch.page.loose import LooseEnds
 
 Array = NDArray[np.float64]
 

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.context import LARGE
-from sketch.pieces import Page, Piece
+from sketch.around.context import LARGE
+from sketch.page.pieces import Page, Piece
 from sketch.scan.binding import coarseness, course_length
 from sketch.scan.skeleton.graph import Ink
 from sketch.scan.strokes.layout import CRUMB
 from sketch.scan.strokes.ways import SIDE, Way
-from sketch.scoring import STRANGE, Fitted
+from sketch.shapes.scoring import STRANGE, Fitted
 from sketch.typing import Points
 
 __all__ = ["Prices", "Taken", "lines"]

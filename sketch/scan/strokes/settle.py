@@ -14,16 +14,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sketch.arrows import likeliest_arrow, prefer_arrow
-from sketch.context import Context
+from sketch.around.arrows import likeliest_arrow, prefer_arrow
+from sketch.around.context import Context
 from sketch.kernel import depth
-from sketch.pieces import Page
-from sketch.proposals import HOPELESS, Proposals, Proposed, proposing
+from sketch.page.pieces import Page
 from sketch.scan.binding import course_length
 from sketch.scan.strokes.prices import Prices
 from sketch.scan.strokes.together import Together
 from sketch.scan.strokes.ways import Way
-from sketch.scoring import Fitted
+from sketch.shapes.proposals import HOPELESS, Proposals, Proposed, proposing
+from sketch.shapes.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["settle"]

@@ -10,8 +10,8 @@ from functools import cached_property
 import numpy as np
 
 from sketch.kernel import along, heads, joined, measure, reaching, touching
-from sketch.loose import Chain, End, LooseEnds
-from sketch.scoring import unread
+from sketch.page.loose import Chain, End, LooseEnds
+from sketch.shapes.scoring import unread
 from sketch.typing import Array, Point
 
 __all__ = ["Looked", "Page", "Piece"]

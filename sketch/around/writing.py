@@ -8,14 +8,14 @@ from collections.abc import Mapping, Sequence, Set
 
 import numpy as np
 
-from sketch.dimensions import dimension_line
-from sketch.hatching import hatching
+from sketch.around.dimensions import dimension_line
+from sketch.around.hatching import hatching
+from sketch.around.pins import REACH, is_over
+from sketch.around.rows import TALL, Rows, near_one_another
 from sketch.kernel import depth
-from sketch.pieces import Page
-from sketch.pins import REACH, is_over
-from sketch.proposals import Pick, Proposed, Row
-from sketch.rows import TALL, Rows, near_one_another
-from sketch.scoring import Fitted
+from sketch.page.pieces import Page
+from sketch.shapes.proposals import Pick, Proposed, Row
+from sketch.shapes.scoring import Fitted
 from sketch.typing import Point
 
 __all__ = ["LARGEST", "WITHIN", "WRITTEN", "written"]

@@ -11,9 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from sketch.kernel import Shaft, lent
-from sketch.loose import Chain
-from sketch.pieces import Page, Piece
-from sketch.scoring import Fitted
+from sketch.page.loose import Chain
+from sketch.page.pieces import Page, Piece
+from sketch.shapes.scoring import Fitted
 from sketch.typing import Array, Point
 
 __all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "crossing", "in_line", "shafts"]

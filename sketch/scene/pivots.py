@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.scene import Joint
-from sketch.bodies import Bodies, Drawn, ids, touch
+from sketch.around.pins import is_on_line
 from sketch.ink import Sketch
 from sketch.kernel import depth
-from sketch.pins import is_on_line
+from sketch.scene.bodies import Bodies, Drawn, ids, touch
 
 __all__ = ["UNSURE", "pivots"]
 

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from sketch.bars import read_bar
-from sketch.grouping import shafts
 from sketch.kernel import cuts
-from sketch.marks import read_arrows, read_cross
-from sketch.outlines import read_outline
-from sketch.pieces import Page, Piece
-from sketch.proposals import APART
+from sketch.page.grouping import shafts
+from sketch.page.pieces import Page, Piece
+from sketch.shapes.bars import read_bar
+from sketch.shapes.marks import read_arrows, read_cross
+from sketch.shapes.outlines import read_outline
+from sketch.shapes.proposals import APART
 from sketch.typing import Array
 
 __all__ = ["things_in"]

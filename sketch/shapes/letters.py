@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sketch.kernel import words
-from sketch.pieces import Page
-from sketch.proposals import MEANT, Proposed, proposing
-from sketch.scoring import PARAMETER, Fitted
+from sketch.page.pieces import Page
+from sketch.shapes.proposals import MEANT, Proposed, proposing
+from sketch.shapes.scoring import PARAMETER, Fitted
 
 __all__ = ["Letter", "Letters"]
 

@@ -7,7 +7,7 @@ from collections.abc import Set
 
 import numpy as np
 
-from sketch.pieces import Page, Piece
+from sketch.page.pieces import Page, Piece
 
 __all__ = ["hatching"]
 

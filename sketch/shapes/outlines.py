@@ -11,10 +11,10 @@ from functools import partial
 import numpy as np
 
 from sketch.kernel import ClosedFit, course_around, fit_closed, off_outline, ring
-from sketch.loose import Chain
-from sketch.pieces import Page, Piece
-from sketch.sampling import arced, unevenness
-from sketch.scoring import FREE, PARAMETER, Fitted, misfit
+from sketch.page.loose import Chain
+from sketch.page.pieces import Page, Piece
+from sketch.page.sampling import arced, unevenness
+from sketch.shapes.scoring import FREE, PARAMETER, Fitted, misfit
 from sketch.typing import Array
 
 __all__ = ["LEAST_AXIS", "gone_over", "read_borrowing", "read_outline"]

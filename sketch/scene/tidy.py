@@ -12,9 +12,9 @@ from itertools import pairwise
 import numpy as np
 
 from sim.scene import Joint
-from sketch.bodies import Drawn
 from sketch.kernel import is_simple
 from sketch.reading import Reading
+from sketch.scene.bodies import Drawn
 from sketch.typing import Array
 
 __all__ = ["close_gaps", "straighten"]

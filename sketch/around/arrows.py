@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 
 from sketch.kernel import depth
-from sketch.pieces import Page, Piece
-from sketch.proposals import Pick, Proposed, Row, proposing
-from sketch.scoring import Fitted
+from sketch.page.pieces import Page, Piece
+from sketch.shapes.proposals import Pick, Proposed, Row, proposing
+from sketch.shapes.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["likeliest_arrow", "pointing", "prefer_arrow"]

@@ -7,12 +7,12 @@ import math
 
 import numpy as np
 
+from sketch.around.pins import PINNED, REACH, is_over
+from sketch.around.writing import LARGEST, WITHIN, WRITTEN
 from sketch.kernel import beside, depth, gap
-from sketch.pins import PINNED, REACH, is_over
-from sketch.proposals import Pick, Proposed, Row
-from sketch.scoring import Fitted
+from sketch.shapes.proposals import Pick, Proposed, Row
+from sketch.shapes.scoring import Fitted
 from sketch.typing import Point
-from sketch.writing import LARGEST, WITHIN, WRITTEN
 
 __all__ = ["Context"]
 

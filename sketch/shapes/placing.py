@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sketch.kernel import SIDES, off_outline, place
-from sketch.pieces import Page
-from sketch.scoring import Fitted
+from sketch.page.pieces import Page
+from sketch.shapes.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["Placed", "placed"]

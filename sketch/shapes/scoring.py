@@ -20,7 +20,7 @@ import numpy as np
 from sketch.typing import Array
 
 if TYPE_CHECKING:
-    from sketch.pieces import Piece
+    from sketch.page.pieces import Piece
 
 __all__ = ["Fitted", "meaningless", "misfit", "misfit_of", "unread"]
 

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Collection, Sequence, Set
 
 from sketch.kernel import words
-from sketch.pieces import Page
+from sketch.page.pieces import Page
 
 __all__ = ["TALL", "Rows", "near_one_another"]
 
