@@ -76,21 +76,17 @@ class _Cover:
     """Covers with some of the readings, by number. cost: nats to say each."""
 
     def __init__(self, all_: Together, some: NDArray[np.intp], cost: Singles) -> None:
-        self._has, self._along = all_._has[some], all_._along[some]
-        self._free, self._cost = all_._free, cost
-        self._left = some >= all_._count
+        self._has, self._free, self._cost = all_._has[some], all_._free, cost
+        left, both = some >= all_._count, all_._along[some] @ self._has.T
+        # nats that one is rarer beside another; what is left over together is no other's ink
+        self._beside = np.where((both > 0) & (left | left[:, None]), np.inf, ALONG * both).astype(np.float32)
+        np.fill_diagonal(self._beside, 0.0)
 
     def gain(self, chosen: list[int]) -> float:
         """Nats that some readings save together against saying all ink freely."""
         covered = self._has[chosen].any(axis=0)
-        beside = sum(float(self._beside(k)[chosen[n + 1 :]].sum()) for n, k in enumerate(chosen))
+        beside = float(self._beside[np.ix_(chosen, chosen)].sum()) / 2
         return float(self._free[covered].sum() - self._cost[chosen].sum()) - beside
-
-    def _beside(self, k: int) -> Singles:
-        """Nats that each reading is rarer beside one of them; what is left over together is no other's ink."""
-        both = self._along @ self._has[k]
-        apart = (both > 0) & (self._left | self._left[k])
-        return np.asarray(np.where(apart, np.inf, ALONG * both), np.float32)
 
     def cheapest(self, first: list[int]) -> list[int]:
         """The cover that gains the most of those that were found, beginning with one."""
@@ -144,9 +140,8 @@ class _Cover:
                 chosen.append(k)
                 new = open_ & (self._has[k] > 0)
                 open_ &= ~new
-                beside = self._beside(k)
-                rarer += beside
-                profit -= self._has @ (worth * new) + beside
+                rarer += self._beside[k]
+                profit -= self._has @ (worth * new) + self._beside[k]
                 profit[k] = -np.inf
         return self._needed(chosen)
 
@@ -155,7 +150,7 @@ class _Cover:
         while chosen:
             holders = self._has[chosen].sum(axis=0)
             alone = self._has[chosen] @ (self._free * (holders == 1)) - self._cost[chosen]
-            alone -= [float(self._beside(k)[[j for j in chosen if j != k]].sum()) for k in chosen]
+            alone -= self._beside[np.ix_(chosen, chosen)].sum(axis=1)
             worst = int(alone.argmin())
             if alone[worst] >= 0:
                 break
