@@ -271,7 +271,9 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     left_out = ["left out a frame all around, and what is beyond it"] if frame is not None else []
     left_out += ["left out what is printed from edge to edge of the sheet, or a crease"] if margins else []
-    solid = np.flatnonzero((found.area > SOLID * found.extent.prod(axis=1)) & (found.span > HOLE * size))
+    faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
+    is_solid = (found.area > SOLID * found.extent.prod(axis=1)) & (found.span > HOLE * size)
+    solid = np.flatnonzero(is_solid & (found.strength >= faintest))
     if photographed and len(solid):
         ends = np.cumsum(found.area)
         discs = [found.pixels[ends[k] - found.area[k] : ends[k]] for k in solid]
@@ -281,7 +283,6 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     held = found.at_edge & (found.span < (FINGER_MARK if frame is None else HUNG) * size)
     if frame is None and page.edge is not None:  # the sheet bends there, and has a shade along its edge
         held |= found.wholly(page.edge) & (found.strength < SMUDGE * full)
-    faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
     seen = (found.strength >= faintest) & (found.span >= 2 * reach)
     keep = seen & ~held
     if frame is None:

@@ -232,6 +232,18 @@ def test_a_box_that_a_hand_drew_around_everything_is_drawn() -> None:
     assert max(float(np.ptp(s.points[:, 0])) for s in sketch.strokes) > WIDTH
 
 
+@pytest.mark.parametrize("ruling", [0, 25])
+def test_a_shade_along_the_edges_is_no_row_of_holes(ruling: int) -> None:
+    image = drawn(ink(), noise=3.0).astype(float)
+    height, width = image.shape[:2]
+    for x in range(20, width, 34):
+        image[:, x : x + 2] -= ruling
+    across, down = np.arange(width)[None], np.arange(height)[:, None]
+    to_edge = np.minimum(np.minimum(down, height - 1 - down), np.minimum(across, width - 1 - across))
+    sketch = read_picture(encoded(lit(image, 1 - 0.1 * np.exp(-to_edge / 14)), ".jpg"))
+    assert (len(sketch.strokes), sketch.notes) == (4, [])
+
+
 def test_holes_along_an_edge_are_not_drawn_but_balls_on_a_floor_are() -> None:
     sketch = read_picture(encoded(punched(floor=False)))
     assert_all(sketch)
