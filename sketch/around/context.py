@@ -134,7 +134,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
                 gains[k] -= WRITTEN
         if c.kind == "cross":
             large = extent > LARGE * size
-            if bodies.under(c, extent):
+            if bodies.under(c, extent) or bodies.on_line(c, extent):
                 gains[k] += ANCHORS
             elif not bodies.reached(c):
                 gains[k] -= NO_BODY * (1 + large)
@@ -146,7 +146,6 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= ANCHORS * (extent < LARGEST * drawn)  # what is so small and no ring is written
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
-            gains[k] += NO_BODY * bodies.ground(c, row)
         elif c.kind == "circle" and (bodies.joined(c, extent) > 1 or bodies.axle(c, extent)):
             gains[k] += ANCHORS
     return gains
@@ -211,7 +210,6 @@ class _Bodies:
         self.held_of = {line.pieces[0]: held.get(line, 0) for line in bars if line.pieces}
         self.closed = [(body, row) for body, row in bodies.items() if body.closed]
         self.lines = [(c, row[4]) for c, row in bodies.items() if c.kind == "bar"]
-        self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]
 
     def under(self, mark: Fitted, extent: float, least: float = 0.0) -> int:
         """How many bodies, of extents of more than `least`, a mark is over."""
@@ -268,15 +266,12 @@ class _Bodies:
                     return True
         return False
 
-    def ground(self, line: Fitted, row: Row) -> bool:
-        """Whether an X of other ink stands on an open line, and on no closed outline."""
-        x0, y0, x1, y1, long = row
-        for mark, extent in self.crosses:
-            if extent >= long / LARGER or set(line.pieces).intersection(mark.pieces):
-                continue
-            (x, y), reach = mark.middle, ON_LINE * extent
-            if x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach:
-                off, _ = gap(np.array([(x, y), (x, y)]), line.outline)
-                if off < reach and not self.under(mark, extent):
-                    return True
-        return False
+    def on_line(self, cross: Fitted, extent: float) -> bool:
+        """Whether an X stands on an open line of other ink: the ground."""
+        at, reach = np.array([cross.middle, cross.middle]), ON_LINE * extent
+        return any(
+            extent < long / LARGER
+            and set(line.pieces).isdisjoint(cross.pieces)
+            and gap(at, line.outline)[0] < reach
+            for line, long in self.lines
+        )

@@ -283,6 +283,15 @@ def test_a_line_of_any_course_is_ground_under_an_x(course, hand, rng) -> None:
     assert max(np.hypot(*(drawn - p).T).min() for p in track) < 25
 
 
+@hands
+def test_small_xs_on_long_open_lines_are_no_letters(hand, rng) -> None:
+    ground = [*line([(120, 620), (1160, 630)], hand, rng), *cross((560, 624), 50, hand, rng)]
+    slope = [*line([(180, 260), (560, 420)], hand, rng), *cross((370, 340), 44, hand, rng)]
+    ball = circle((240, 225), 34, hand, rng)
+    sketch = Sketch([Stroke(s) for s in (*ground, *slope, *ball)], 1280.0, 720.0)
+    assert [body.anchored for body in recognize(sketch).scene.bodies] == [True, True, False]
+
+
 def test_a_wavy_line_by_itself_is_left_out() -> None:
     found = read(line(WAVES, HANDS["neat"], np.random.default_rng(0)))
     assert kinds(found) == ["unread"]
