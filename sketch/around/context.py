@@ -146,6 +146,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= ANCHORS * (extent < LARGEST * drawn)  # what is so small and no ring is written
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
+            gains[k] += NO_BODY * bodies.ground(c, extent)
         elif c.kind == "circle" and (bodies.joined(c, extent) > 1 or bodies.axle(c, extent)):
             gains[k] += ANCHORS
     return gains
@@ -210,6 +211,7 @@ class _Bodies:
         self.held_of = {line.pieces[0]: held.get(line, 0) for line in bars if line.pieces}
         self.closed = [(body, row) for body, row in bodies.items() if body.closed]
         self.lines = [(c, row[4]) for c, row in bodies.items() if c.kind == "bar"]
+        self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]
 
     def under(self, mark: Fitted, extent: float, least: float = 0.0) -> int:
         """How many bodies, of extents of more than `least`, a mark is over."""
@@ -267,11 +269,19 @@ class _Bodies:
         return False
 
     def on_line(self, cross: Fitted, extent: float) -> bool:
-        """Whether an X stands on an open line of other ink: the ground."""
-        at, reach = np.array([cross.middle, cross.middle]), ON_LINE * extent
+        """Whether an X stands on an open line of other ink."""
+        return any(_stands_on(cross, extent, line, long) for line, long in self.lines)
+
+    def ground(self, line: Fitted, long: float) -> bool:
+        """Whether an X of other ink stands on an open line of an extent `long`, and on no closed outline."""
         return any(
-            extent < long / LARGER
-            and set(line.pieces).isdisjoint(cross.pieces)
-            and gap(at, line.outline)[0] < reach
-            for line, long in self.lines
+            _stands_on(cross, extent, line, long) and not self.under(cross, extent)
+            for cross, extent in self.crosses
         )
+
+
+def _stands_on(cross: Fitted, extent: float, line: Fitted, long: float) -> bool:
+    """Whether an X stands on an open line of other ink, that is as large as ground is; extents [pixels]."""
+    if extent >= long / LARGER or not set(line.pieces).isdisjoint(cross.pieces):
+        return False
+    return gap(np.array([cross.middle, cross.middle]), line.outline)[0] < ON_LINE * extent
