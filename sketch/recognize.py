@@ -29,11 +29,11 @@ from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
 from sketch.merging import Chosen, merged
 from sketch.overrides import Overrides, forced_reading, normal_overrides
-from sketch.page.cutting import things_in
 from sketch.page.pieces import Page
 from sketch.page.sampling import sampled
 from sketch.reading import Reading, Rival, scored
 from sketch.search import Packing, Part, part
+from sketch.shapes.cutting import things_in
 from sketch.shapes.letters import Letters
 from sketch.shapes.placing import Placed, placed
 from sketch.shapes.proposals import Pick, Proposals, Proposed, proposing

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pages import box, kinds, ngon, read
 
-from sketch.page.cutting import things_in
+from sketch.shapes.cutting import things_in
 from sketch.synthetic import HANDS, arrow, circle, cross, line, outline
 
 NEAT = HANDS["neat"]
