@@ -27,6 +27,7 @@ __all__ = [
     "course_around",
     "cuts",
     "depth",
+    "depths",
     "fit_arrows",
     "fit_closed",
     "gap",
@@ -84,6 +85,7 @@ _ring = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer, _pointer)(("in
 _touch = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _int, *[_double] * 4)(("ink_touch", _lib))
 _gap = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int, _pointer)(("ink_gap", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
+_depths = ctypes.CFUNCTYPE(None, _pointer, _int, _pointer, _int, _pointer)(("ink_depths", _lib))
 
 
 class Strokes(NamedTuple):
@@ -447,6 +449,13 @@ def is_simple(outline: Array) -> bool:
 def depth(x: float, y: float, outline: Array) -> float:
     """Distance of a point from a closed outline, (n, 2) [pixels]; negative inside."""
     return float(_depth(x, y, address(outline), len(outline)))
+
+
+def depths(points: Array, outline: Array) -> list[float]:
+    """Likewise of points, (m, 2)."""
+    found = np.empty(len(points))
+    _depths(address(points), len(points), address(outline), len(outline), address(found))
+    return found.tolist()
 
 
 def gap(one: Array, other: Array) -> tuple[float, Point]:

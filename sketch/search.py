@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sketch.typing import Array
+
 __all__ = ["Packing", "Part", "part"]
 
 Group = tuple[int, ...]  # of pieces of ink
@@ -144,14 +146,17 @@ def _not_outdone(groups: list[Packed]) -> list[int]:
     kept = []
     for g in best.values():
         ink, gain = groups[g]
-        left, within = mask[g], 0.0
+        own = mask[g]
+        within, taken = 0.0, ~own  # by others, or not of its ink
         for i in ink if len(ink) > 1 else ():
-            if left & bit[i]:
+            if not taken & bit[i]:
                 for other, its in on[i]:
-                    if not other & ~left and other != mask[g]:
-                        left, within = left ^ other, within + its
+                    if not other & taken and other != own:
+                        taken, within = taken | other, within + its
                         break
-        if within < gain:
+                if within >= gain:
+                    break
+        else:
             kept.append(g)
     return kept
 
@@ -174,13 +179,25 @@ def _swept(inks: list[Group]) -> list[int]:
     return out
 
 
-def _greedy(groups: Sequence[Packed]) -> list[int]:
-    """The groups of a cluster, the best first, as far as each leaves the others' ink alone."""
-    taken: set[int] = set()
+def _as_bits(groups: Sequence[Packed]) -> list[int]:
+    """The pieces of each group as the bits of a number."""
+    bit: dict[int, int] = {}
+    for ink, _ in groups:
+        for i in ink:
+            bit.setdefault(i, 1 << len(bit))
+    return [sum(map(bit.__getitem__, ink)) for ink, _ in groups]
+
+
+def _greedy(inks: Sequence[int], gains: Array) -> list[int]:
+    """The groups of a cluster, the best first, as far as each leaves the others' ink alone.
+
+    inks: as of `_as_bits`.
+    """
+    taken = 0
     out = []
-    for g in sorted(range(len(groups)), key=lambda g: -groups[g][1]):
-        if taken.isdisjoint(groups[g][0]):
-            taken.update(groups[g][0])
+    for g in np.argsort(-gains, kind="stable").tolist():
+        if not taken & inks[g]:
+            taken |= inks[g]
             out.append(g)
     return out
 
@@ -194,14 +211,14 @@ def _shares(groups: Sequence[Packed], share: dict[int, float] | None = None) -> 
     on: dict[int, list[int]] = {}
     even = {} if share is None else dict(share)
     for g, (ink, gain) in enumerate(groups):
-        lacks = (gain if share is None else gain - sum(even[i] for i in ink)) / len(ink)
+        lacks = (gain if share is None else gain - sum(map(even.__getitem__, ink))) / len(ink)
         for i in ink:
             on.setdefault(i, []).append(g)
             even[i] = max(even.get(i, 0.0), lacks if share is None else even[i] + lacks)
-    spare = [sum(even[i] for i in ink) - gain for ink, gain in groups]
+    spare = [sum(map(even.__getitem__, ink)) - gain for ink, gain in groups]
     for _ in range(ROUNDS):
         for i, its in on.items():
-            less = min(even[i], min(spare[g] for g in its))
+            less = min(even[i], min(map(spare.__getitem__, its)))
             even[i] -= less
             for g in its:
                 spare[g] -= less
@@ -213,7 +230,7 @@ def _packed(groups: Sequence[Packed]) -> list[int]:
     if len(groups) == 1:
         return [0]
     if len({i for ink, _ in groups for i in ink}) > MOST_PIECES:
-        return _greedy(groups)
+        return _greedy(_as_bits(groups), np.array([gain for _, gain in groups]))
     best, is_best = _branched(groups, _shares(groups), FEW_LOOKS)
     if is_best:
         return best
@@ -245,7 +262,8 @@ def _narrowed(groups: Sequence[Packed], best: list[int]) -> tuple[list[int], lis
     shares = _shares(groups)
     price = np.array([shares[i] for i in names])
     least, prices, step, waited = np.inf, price, 1.0, 0
-    by_gain = _greedy(groups)
+    inks = _as_bits(groups)
+    by_gain = _greedy(inks, gains)
     best = max(best, by_gain, key=lambda some: _total(groups, some))
     reached = _total(groups, best)
     for descent in range(DESCENTS):
@@ -257,7 +275,7 @@ def _narrowed(groups: Sequence[Packed], best: list[int]) -> tuple[list[int], lis
         if waited == PATIENCE:
             step, waited = step / 2, 0
         if descent % OFTEN == 0:
-            found = _greedy([(ink, its) for (ink, _), its in zip(groups, surplus.tolist(), strict=True)])
+            found = _greedy(inks, surplus)
             if (gain := _total(groups, found)) > reached:
                 best, reached = found, gain
         slope = 1.0 - np.bincount(piece[np.repeat(surplus > 0, sizes)], minlength=len(names))

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sketch.kernel import depth
+from sketch.kernel import depths
 from sketch.page.pieces import Page, Piece
 from sketch.shapes.proposals import Pick, Proposed, Row, proposing
 from sketch.shapes.scoring import Fitted
@@ -24,7 +24,7 @@ SURE = 40.0  # nats, at most, by which how well an arrow is drawn says that it i
 LONGEST = 10.0  # nats for each time that one is e times as long as another: what is beside a body is smaller
 BESIDE = 40.0  # nats that an arrow is rarer that runs along a body or points at one
 NEAR = 0.4  # of an arrow's length: as far from it a body has no part in what it means, nearer some of BESIDE
-PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)  # shares of its length at which it is asked how far off a body it is
+PLACES = np.linspace(0, 1, 5)[:, None]  # shares of its length at which it is asked how far off a body it is
 
 # An arrow that begins at a body and points away says how that moves.
 AT_BODY = 0.25  # of its length: as near to the body is its tail
@@ -141,9 +141,9 @@ def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) 
 def _beside(ends: Array, long: float, bodies: list[Fitted]) -> float:
     """Nats that an arrow of some length is rarer for the bodies beside it; infinite if it begins at one."""
     tail, tip = ends
-    along = NEAR * long
+    along, places = NEAR * long, tail + PLACES * (tip - tail)
     for body in bodies:
-        first, *others = (depth(x, y, body.outline) for x, y in (tail + t * (tip - tail) for t in PLACES))
+        first, *others = depths(places, body.outline)
         if first < AT_BODY * long and others[-1] - first > AWAY * long:
             return math.inf
         along = min(along, first, *others)

@@ -4,6 +4,7 @@ equal."""
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -134,12 +135,12 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
                 gains[k] -= WRITTEN
         if c.kind == "cross":
             large = extent > LARGE * size
-            if bodies.under(c, extent) or bodies.on_line(c, extent):
+            if any(bodies.under(c, extent)) or bodies.on_line(c, extent):
                 gains[k] += ANCHORS
             elif not bodies.reached(c):
                 gains[k] -= NO_BODY * (1 + large)
         elif c.kind == "arrow":
-            gains[k] -= ANCHORS * (bodies.under(c, extent) > 0)
+            gains[k] -= ANCHORS * any(bodies.under(c, extent))
             slips = len(c.pieces) * (extent < TWIG * drawn)  # each stroke of a tiny one is
             gains[k] -= SLIP * (slips + bodies.slip(c, extent))
         elif c.kind == "ellipse":
@@ -213,18 +214,19 @@ class _Bodies:
         self.lines = [(c, row[4]) for c, row in bodies.items() if c.kind == "bar"]
         self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]
 
-    def under(self, mark: Fitted, extent: float, least: float = 0.0) -> int:
-        """How many bodies, of extents of more than `least`, a mark is over."""
-        (x, y), count = mark.middle, 0
+    def under(self, mark: Fitted, extent: float, least: float = 0.0) -> Iterator[Fitted]:
+        """The bodies, of extents of more than `least`, that a mark is over; where any will do, the others are not
+        looked at."""
+        x, y = mark.middle
         for body, (x0, y0, x1, y1, large) in self.closed:
             if large > least and x0 - extent < x < x1 + extent and y0 - extent < y < y1 + extent:
-                count += is_over(mark, extent, body, large)
-        return count
+                if is_over(mark, extent, body, large):
+                    yield body
 
     def joined(self, ring: Fitted, extent: float) -> int:
         """How many bodies and open lines, all much larger, a small circle is over."""
         lines = sum(is_over(ring, extent, line, long) for line, long in self.lines)
-        return lines + self.under(ring, extent, PINNED * extent)
+        return lines + sum(1 for _ in self.under(ring, extent, PINNED * extent))
 
     def reached(self, cross: Fitted) -> bool:
         """Whether a bar of an X ends in a body of other ink: its middle misses it by a slip of the hand."""
@@ -275,7 +277,7 @@ class _Bodies:
     def ground(self, line: Fitted, long: float) -> bool:
         """Whether an X of other ink stands on an open line of an extent `long`, and on no closed outline."""
         return any(
-            _stands_on(cross, extent, line, long) and not self.under(cross, extent)
+            _stands_on(cross, extent, line, long) and not any(self.under(cross, extent))
             for cross, extent in self.crosses
         )
 

@@ -53,6 +53,11 @@ INK_API double ink_depth(double x, double y, const double *outline, int32_t n) {
     return within ? -sqrt(best) : sqrt(best);
 }
 
+/* Likewise of `count` points, (count, 2). */
+INK_API void ink_depths(const double *points, int32_t count, const double *outline, int32_t n, double *depths) {
+    for (int i = 0; i < count; i++) depths[i] = ink_depth(points[2 * i], points[2 * i + 1], outline, n);
+}
+
 /* Keep a point where it is nearer to the side from a to b than `best`, squared. */
 static void keep_nearer(const double *p, const double *a, const double *b, double *best, double at[2]) {
     const double off = segment_distance2(p[0], p[1], a, b);

@@ -26,9 +26,9 @@ OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wi
 NOTHING = measure([])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)  # frozen, it would take four times as long to make
 class Piece:
-    """A stroke, or a part of one, with what every reading asks of it.
+    """A stroke, or a part of one, with what every reading asks of it. Never changed once it is made.
 
     Attributes:
         index: among the page's pieces.

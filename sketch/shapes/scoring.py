@@ -32,9 +32,9 @@ STRANGE = 35.0  # nats to say that something was drawn that has no meaning here
 LINE = 11.0  # observations in a straight line: what is less, a tap of the pen, is less of a surprise
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)  # frozen, it would take four times as long to make, and very many are
 class Fitted:
-    """A primitive fitted to some ink.
+    """A primitive fitted to some ink. Never changed once it is made.
 
     Attributes:
         kind: "circle", "ellipse", "rectangle", "polygon", "free" (an outline of any course), "cross", "arrow" or "bar".
