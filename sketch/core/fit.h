@@ -29,9 +29,9 @@ typedef struct {
     double cost;         /* squared distances from the bowed line, and the price of the bow */
 } Line;
 
-/* Fill the sums, and the costs.  stiffness: (tremor / usual bow)², what a bow costs.
- * closed: whether runs pass the end; else the costs of those that do are left undefined. */
-void runs_prepare(Runs *r, int closed, double stiffness);
+/* Fill the sums, and the costs of what splits begun at the first sample, or at sample `begin`, have runs of; those of others
+ * are left undefined.  stiffness: (tremor / usual bow)², what a bow costs. */
+void runs_prepare(Runs *r, int begin, double stiffness);
 
 /* The line of samples first .. first+count-1. Nobody draws a straight side straight: it may bow, at a price. */
 Line runs_line(const Runs *r, int first, int count, double stiffness);

@@ -16,8 +16,7 @@ static const double ROUNDED = 0.018; /* usual mean bow, times the root of the nu
 static const double STIFFNESS = 0.6; /* (tremor / bow)², while splitting: how much rather a side trembles than bows */
 static const double FLAT = 0.8; /* a corner that turns by less [rad] may be a bow, */
 static const double EVEN = 0.66; /* or less than this share of what it would in an even polygon */
-static const double REFLEX = 1.2; /* likewise one that turns inward: */
-static const double CLEAR = 0.36; /* its cosine: one that turns by more is clear, and no angle need be taken */
+static const double REFLEX = 1.2; /* likewise one that turns inward */
 static const double WIDE = 0.25; /* of the ink: where more is missing, what would fit best after all was not meant */
 static const double MENDS = 40; /* nats that moving its corners hardly ever saves of a polygon more */
 static const double ROUNDER = 80; /* nats that something round may take less, and polygons are not looked at further */
@@ -71,8 +70,10 @@ static double odd_side(const double *a, const double *b, const double *c, const 
     double dot = dx * ex + dy * ey, odd = 0;
     int reflex = (dx * ey - dy * ex) * area < 0;
     if (reflex) odd += INWARD;
-    if (dot > 0 && dot * dot > CLEAR * CLEAR * (dx * dx + dy * dy) * (ex * ex + ey * ey)) {
-        double flat = ((reflex ? REFLEX : fmin(FLAT, EVEN * 2 * PI / k)) - fabs(turn_at(b, c, d))) / FLATNESS;
+    /* As cos x > 1 - x²/2, a corner of a lesser cosine turns by more, and its angle need not be taken. */
+    double flattest = reflex ? REFLEX : fmin(FLAT, EVEN * 2 * PI / k), clear = 1 - flattest * flattest / 2;
+    if (dot > 0 && dot * dot > clear * clear * (dx * dx + dy * dy) * (ex * ex + ey * ey)) {
+        double flat = (flattest - fabs(turn_at(b, c, d))) / FLATNESS;
         if (flat > 0) odd += 0.5 * flat * flat;
     }
     double brief = fmin(SHORT, 0.7 / k) - share;
@@ -251,17 +252,19 @@ static int leave_out(Polygon *p, int q) {
     return 1;
 }
 
-/* Move corners, each by a sample at a time, as long as that costs less. */
+/* Move corners, each by a sample at a time, as long as that costs less. Where one came from is not looked at again, nor the
+ * corner itself before another one has moved. */
 static void refine(const Ink *ink, Polygon *p) {
     for (int q = 0, idle = 0; idle < p->k; q = (q + 1) % p->k) {
-        idle++;
-        for (int by = -1; by <= 1; by += 2)
+        int moved = 0;
+        for (int by = -1; by <= 1 && !moved; by += 2)
             for (Polygon t = *p; move(&t, q, by); t = *p) {
                 judge(ink, &t);
                 if (!(t.cost < p->cost - TIE)) break;
                 *p = t;
-                idle = 0;
+                moved = 1;
             }
+        idle = moved ? 1 : idle + 1;
     }
 }
 
@@ -283,7 +286,9 @@ static int sharpest(const Runs *r) {
 
 /* The splits of least squares from two beginnings, at each of which a side must begin: where the ink does, and at its sharpest
  * corner. */
-static void split_sides(const Ink *ink, const Runs *r, const double stretch[2], Found *found) {
+static void split_sides(const Ink *ink, Runs *r, const double stretch[2], Found *found) {
+    const int sharp = sharpest(r);
+    runs_prepare(r, sharp, STIFFNESS);
     Split split;
     Polygon p;
     p.runs = r;
@@ -292,7 +297,7 @@ static void split_sides(const Ink *ink, const Runs *r, const double stretch[2], 
     p.stretch[1] = stretch[1];
     for (int b = 0; b < BEGINNINGS; b++) {
         double least = INFINITY;
-        p.start = b == 0 ? 0 : sharpest(r);
+        p.start = b == 0 ? 0 : sharp;
         split_begin(&split, r, p.start);
         split_further(&split, 2);
         for (p.k = 3; p.k <= SIDES; p.k++) {
@@ -340,8 +345,10 @@ static void refine_best(const Ink *ink, Found *found) {
 void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon best[SIDES + 1]) {
     const double even[2] = {1, 1}, drawn[2] = {stretch, 1 / stretch};
     Found found = {.simple = best};
-    for (int k = 0; k <= SIDES; k++) best[k] = found.any[k] = (Polygon){.cost = INFINITY, .bridge = -1};
-    runs_prepare(square, 1, STIFFNESS);
+    for (int k = 0; k <= SIDES; k++) {
+        best[k].cost = found.any[k].cost = INFINITY;
+        best[k].undrawn = found.any[k].k = 0;
+    }
     split_sides(ink, square, even, &found);
     /* The ends of a long box may be as loose along it as its sides are across, as if it had been drawn square and
      * stretched, or less so: both are tried, as nobody says how a hand errs. */
@@ -351,7 +358,6 @@ void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, P
             longer->x[i] = square->x[i] * drawn[0];
             longer->y[i] = square->y[i] * drawn[1];
         }
-        runs_prepare(longer, 1, STIFFNESS);
         split_sides(ink, longer, drawn, &found);
     }
     refine_best(ink, &found);

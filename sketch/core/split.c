@@ -45,7 +45,7 @@ static double bow_squares(int m) {
     return fourth - m * mean * mean;
 }
 
-void runs_prepare(Runs *r, int closed, double stiffness) {
+void runs_prepare(Runs *r, int begin, double stiffness) {
     int n = r->n;
     memcpy(r->x + n, r->x, n * sizeof *r->x);
     memcpy(r->y + n, r->y, n * sizeof *r->y);
@@ -73,7 +73,7 @@ void runs_prepare(Runs *r, int closed, double stiffness) {
     for (int i = 0; i < n; i++) {
         /* Rows of what the runs from i on have in common, so that a compiler takes several runs at a time. */
         double least[SAMPLES + 1], bowed[SAMPLES + 1], per_length[SAMPLES + 1];
-        int most_samples = closed ? n : n - i;
+        int most_samples = i < begin ? n - i : n - i + begin;
         for (int m = 2; m <= most_samples; m++) {
             int e = i + m;
             double ax = r->sx[e] - r->sx[i], ay = r->sy[e] - r->sy[i];
