@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.library import address, library
-from sketch.typing import Array, Box, Point
+from sketch.typing import Array, Point
 
 __all__ = [
     "SIDES",
@@ -21,7 +21,6 @@ __all__ = [
     "Point",
     "Shaft",
     "Strokes",
-    "along",
     "beside",
     "course",
     "course_around",
@@ -31,22 +30,19 @@ __all__ = [
     "fit_arrows",
     "fit_closed",
     "gap",
-    "heads",
     "is_simple",
     "joined",
     "lent",
     "measure",
     "off_outline",
     "place",
-    "reaching",
     "ring",
     "touch",
-    "touching",
     "words",
 ]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
-COURSE, HEADS = 32, 4  # as in core/course.c and core/heads.c
+COURSE = 32  # as in core/course.c
 LENT = 1000  # points of a side that is lent, at most: MOST_STEPS of core/lend.c
 LIFT = 6  # numbers that a struct Lift of core/outline.h takes
 _lib = library()
@@ -57,10 +53,6 @@ _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, *[_po
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
 _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _pointer, _pointer, _double, _pointer, _pointer)(
     ("ink_arrows", _lib)
-)
-_along = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 4, _int, _double, _pointer, _pointer)(("ink_along", _lib))
-_heads = ctypes.CFUNCTYPE(None, _int, *[_pointer] * 5, _int, _pointer, *[_double] * 3, _pointer, _pointer)(
-    ("ink_heads", _lib)
 )
 _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
     ("ink_beside", _lib)
@@ -75,8 +67,6 @@ _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, 
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
 _around = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_course_around", _lib))
-_touching = ctypes.CFUNCTYPE(_int, _int, _pointer, *[_double] * 4, _pointer)(("ink_touching", _lib))
-_reaching = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 2, *[_double] * 5, _pointer)(("ink_reaching", _lib))
 _placed = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer, _int, _int)(("ink_placed", _lib))
 _lend = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, *[_pointer] * 2, _double, _int, _pointer)(
     ("ink_lend", _lib)
@@ -288,66 +278,6 @@ def fit_arrows(
         head = (v[0], v[1]), (v[2], v[3]), (v[4], v[5])
         found.append(ArrowFit(own, shafts[g].tail, head, v[6:9], v[11], v[12:15], v[15], v[16:]))
     return found
-
-
-def heads(
-    ink: tuple[Array, Array, NDArray[np.int64]],
-    rivals: tuple[int | None, int | None],
-    shaft: int,
-    tips: tuple[Point, Point],
-    limits: tuple[float, float, float],
-) -> tuple[list[int], list[int]]:
-    """The pieces that may be a shaft's head, for each of two tips, the nearest first (see core/heads.c).
-
-    ink: of all pieces their boxes, measures and points.  limits: reach, span and size [pixels].
-    """
-    given, out = np.array(tips), np.empty(2 * HEADS + 2, dtype=np.int32)
-    at = address(out)
-    of = [address(part) for part in ink]
-    _heads(len(ink[0]), *of, *rivals, shaft, address(given), *limits, at, at + 8 * HEADS)
-    *near, first, second = out.tolist()
-    return near[:first], near[HEADS : HEADS + second]
-
-
-def along(
-    boxes: Array, strokes: Strokes, sizes: Array, outline: Array, reach: float
-) -> tuple[list[int], Box]:
-    """The pieces in an outline's box, widened by `reach`, whose ink may run along it, and that box (see
-    core/along.c)."""
-    found, box = np.empty(len(boxes), dtype=np.int32), np.empty(4)
-    count = _along(
-        len(boxes),
-        address(boxes),
-        address(strokes.samples),
-        address(sizes),
-        address(outline),
-        len(outline),
-        reach,
-        address(box),
-        address(found),
-    )
-    x0, y0, x1, y1 = box.tolist()
-    return _numbers(found, count), (x0, y0, x1, y1)
-
-
-def touching(boxes: Array, box: Box) -> list[int]:
-    """The pieces whose boxes, (n, 4), have a point in one."""
-    found = np.empty(len(boxes), dtype=np.int32)
-    count = _touching(len(boxes), address(boxes), *box, address(found))
-    return _numbers(found, count)
-
-
-def reaching(boxes: Array, strokes: Strokes, box: Box, reach: float) -> list[int]:
-    """The pieces that may come within `reach` of two places, given the box around these [pixels] (see core/near.c)."""
-    found = np.empty(len(boxes), dtype=np.int32)
-    count = _reaching(len(boxes), address(boxes), address(strokes.measure), *box, reach, address(found))
-    return _numbers(found, count)
-
-
-def _numbers(found: NDArray[np.int32], count: int) -> list[int]:
-    """The first so many."""
-    numbers: list[int] = found[:count].tolist()
-    return numbers
 
 
 def beside(boxes: Array, bodies: Array) -> list[list[int]]:

@@ -9,8 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from sketch.kernel import along, heads, joined, measure, reaching, touching
+from sketch.kernel import joined, measure
 from sketch.page.loose import Chain, End, LooseEnds
+from sketch.page.near import Near
 from sketch.shapes.scoring import unread
 from sketch.typing import Array, Point
 
@@ -147,6 +148,7 @@ class Page:
         self._boxes = np.empty((0, 4))
         self._sizes = np.empty(0)  # of each: what its distances from other ink are compared with [pixels]
         self._points = np.empty((0, 2), dtype=np.int64)  # of each piece where its points are, and how many
+        self._near = Near(self._boxes, self.strokes, self._sizes, self._points)
 
     def add(self, strokes: list[Array], given: Sequence[Array | None] = ()) -> range:
         """Measure further strokes, each (n, 2) in pixels; returns their indices.
@@ -176,6 +178,7 @@ class Page:
                 self._boxes[i], ends[k] = piece.box, piece.ends
                 self._sizes[i] = max(piece.scale, piece.extent / 2)
         self.ends.add(ends, new.measure[:, 0])
+        self._near = Near(self._boxes, self.strokes, self._sizes, self._points)
         return range(first, first + count)
 
     def remove(self, index: int) -> None:
@@ -215,21 +218,21 @@ class Page:
     def along(self, outline: Array, reach: float) -> list[Piece]:
         """The pieces in an outline's bounding box, widened by `reach` [pixels], whose ink may run along it; told by
         a few places of each, where they are many."""
-        found, box = along(self._boxes, self.strokes, self._sizes, outline, reach)
+        found, box = self._near.along(outline, reach)
         self.looked.boxes.append(box)
         return [self.pieces[i] for i in found]
 
     def touching(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:
         """The pieces whose bounding box has a point in this one."""
         self.looked.boxes.append((x0, y0, x1, y1))
-        return [self.pieces[i] for i in touching(self._boxes, (x0, y0, x1, y1))]
+        return [self.pieces[i] for i in self._near.touching((x0, y0, x1, y1))]
 
     def reaching(self, a: Point, b: Point, reach: float) -> list[Piece]:
         """The pieces of which both of two places are within `reach` [pixels], for all that their boxes tell; of a long
         one it is a step of its samples more."""
         (x0, x1), (y0, y1) = sorted((a[0], b[0])), sorted((a[1], b[1]))
         self.looked.boxes.append((x0 - reach, y0 - reach, x1 + reach, y1 + reach))
-        return [self.pieces[i] for i in reaching(self._boxes, self.strokes, (x0, y0, x1, y1), reach)]
+        return [self.pieces[i] for i in self._near.reaching((x0, y0, x1, y1), reach)]
 
     def heads(
         self, shaft: Piece, tips: tuple[Point, Point], reach: float, span: float, size: float
@@ -237,8 +240,7 @@ class Page:
         """For each of its tips the pieces that may be a shaft's head, the nearest first: those that come within
         `reach` of it, go no further than `span`, and are no larger than `size` [pixels]."""
         self.looked.boxes += [(x - reach, y - reach, x + reach, y + reach) for x, y in tips]
-        ink = self._boxes, self.strokes.measure, self._points
-        return heads(ink, self.ends.rivals, shaft.index, tips, (reach, span, size))
+        return self._near.heads(self.ends.rivals, shaft.index, tips, (reach, span, size))
 
     def chains(self, start: int) -> list[tuple[float, float, float, Chain]]:
         """As of `LooseEnds.chains`."""
@@ -270,7 +272,7 @@ def _piece(
 ) -> Piece:
     length, x0, y0, x1, y1, gap, spread, across = m
     extent = 3 * spread
-    first, last = points[[0, -1]].tolist()
+    first, last = points[:: len(points) - 1].tolist()
     return Piece(
         index=index,
         stroke=s,

@@ -10,8 +10,9 @@ import pytest
 from numpy.typing import NDArray
 from pages import measured, page
 
-from sketch.kernel import along, beside, course_around, fit_closed, gap, lent, measure, off_outline
+from sketch.kernel import beside, course_around, fit_closed, gap, lent, measure, off_outline
 from sketch.page.loose import LooseEnds
+from sketch.page.pieces import Page
 
 Array = NDArray[np.float64]
 
@@ -123,8 +124,7 @@ def test_ink_along_an_outline_and_its_distance() -> None:
         inside = min(x0, y0) >= 150 - 170 and max(x1, y1) <= 150 + 170
         places = math.sqrt(d2[[0, 16, 31, 47]].mean()) < 0.3 * max(p.scale, p.extent / 2)
         assert (p.index in near) == (inside and places)
-    empty = measure([])
-    assert along(np.empty((0, 4)), empty, np.empty(0), ring, 1.0)[0] == []
+    assert Page().along(ring, 1.0) == []
 
 
 def test_pieces_near_a_place_are_those_whose_boxes_are() -> None:
