@@ -82,15 +82,19 @@ def _in_one_place(a: Fitted, b: Fitted) -> bool:
 
 def _marks_gone_over(marks: list[Chosen]) -> list[Chosen]:
     """Some arrows, or some crosses, with those between the same places joined to the best of them."""
-    whole: list[Chosen] = []
-    for mark in sorted(marks, key=lambda c: -c.gain):
-        for k, kept in enumerate(whole):
-            if _ends_apart(mark.fit, kept.fit) < SAME_PLACE * math.dist(*kept.fit.outline[:2].tolist()):
-                whole[k] = kept.along_with(mark)
+    marks = sorted(marks, key=lambda c: -c.gain)
+    boxes = np.array([(*c.fit.outline.min(axis=0), *c.fit.outline.max(axis=0)) for c in marks]).reshape(-1, 4)
+    reach = np.array([SAME_PLACE * math.dist(*c.fit.outline[:2].tolist()) for c in marks])
+    close = np.abs(boxes[:, None] - boxes).max(axis=2) < reach  # for else their ends are further apart
+    whole: dict[int, Chosen] = {}
+    for n, mark in enumerate(marks):
+        for k in np.flatnonzero(close[n, :n]).tolist():
+            if k in whole and _ends_apart(mark.fit, whole[k].fit) < reach[k]:
+                whole[k] = whole[k].along_with(mark)
                 break
         else:
-            whole.append(mark)
-    return whole
+            whole[n] = mark
+    return list(whole.values())
 
 
 def _ends_apart(mark: Fitted, other: Fitted) -> float:

@@ -147,7 +147,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= ANCHORS * (extent < LARGEST * drawn)  # what is so small and no ring is written
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))
-            gains[k] += NO_BODY * bodies.ground(c, extent)
+            gains[k] += NO_BODY * bodies.ground(c, row)
         elif c.kind == "circle" and (bodies.joined(c, extent) > 1 or bodies.axle(c, extent)):
             gains[k] += ANCHORS
     return gains
@@ -211,7 +211,7 @@ class _Bodies:
         bars = [line for line in bodies if line.kind == "bar"]
         self.held_of = {line.pieces[0]: held.get(line, 0) for line in bars if line.pieces}
         self.closed = [(body, row) for body, row in bodies.items() if body.closed]
-        self.lines = [(c, row[4]) for c, row in bodies.items() if c.kind == "bar"]
+        self.lines = [(c, row) for c, row in bodies.items() if c.kind == "bar"]
         self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]
 
     def under(self, mark: Fitted, extent: float, least: float = 0.0) -> Iterator[Fitted]:
@@ -219,13 +219,13 @@ class _Bodies:
         looked at."""
         x, y = mark.middle
         for body, (x0, y0, x1, y1, large) in self.closed:
-            if large > least and x0 - extent < x < x1 + extent and y0 - extent < y < y1 + extent:
-                if is_over(mark, extent, body, large):
-                    yield body
+            near = x0 - extent < x < x1 + extent and y0 - extent < y < y1 + extent
+            if near and large > least and is_over(mark, extent, body, large):
+                yield body
 
     def joined(self, ring: Fitted, extent: float) -> int:
         """How many bodies and open lines, all much larger, a small circle is over."""
-        lines = sum(is_over(ring, extent, line, long) for line, long in self.lines)
+        lines = sum(is_over(ring, extent, line, row[4]) for line, row in self.lines)
         return lines + sum(1 for _ in self.under(ring, extent, PINNED * extent))
 
     def reached(self, cross: Fitted) -> bool:
@@ -272,18 +272,24 @@ class _Bodies:
 
     def on_line(self, cross: Fitted, extent: float) -> bool:
         """Whether an X stands on an open line of other ink."""
-        return any(_stands_on(cross, extent, line, long) for line, long in self.lines)
+        return any(_stands_on(cross, extent, line, row) for line, row in self.lines)
 
-    def ground(self, line: Fitted, long: float) -> bool:
-        """Whether an X of other ink stands on an open line of an extent `long`, and on no closed outline."""
+    def ground(self, line: Fitted, row: Row) -> bool:
+        """Whether an X of other ink stands on an open line, and on no closed outline."""
         return any(
-            _stands_on(cross, extent, line, long) and not any(self.under(cross, extent))
+            _stands_on(cross, extent, line, row) and not any(self.under(cross, extent))
             for cross, extent in self.crosses
         )
 
 
-def _stands_on(cross: Fitted, extent: float, line: Fitted, long: float) -> bool:
-    """Whether an X stands on an open line of other ink, that is as large as ground is; extents [pixels]."""
-    if extent >= long / LARGER or not set(line.pieces).isdisjoint(cross.pieces):
+def _stands_on(cross: Fitted, extent: float, line: Fitted, row: Row) -> bool:
+    """Whether an X of some extent [pixels] stands on an open line of other ink, that is as large as ground is.
+
+    row: where the line is.
+    """
+    (x, y), (x0, y0, x1, y1, long), reach = cross.middle, row, ON_LINE * extent
+    if extent >= long / LARGER or not (x0 - reach < x < x1 + reach and y0 - reach < y < y1 + reach):
         return False
-    return gap(np.array([cross.middle, cross.middle]), line.outline)[0] < ON_LINE * extent
+    if not set(line.pieces).isdisjoint(cross.pieces):
+        return False
+    return gap(np.array([cross.middle, cross.middle]), line.outline)[0] < reach

@@ -111,12 +111,15 @@ class LooseEnds:
         tightest order, with the lengths of its gaps and of its ink [pixels], and how far it turns
         back [rad]; and the ends whose neighbours matter to that."""
         count = _chains(len(self.loose), *self._of, start, *self._into)
+        asked = set(self._asked[1 : 1 + self._asked[0]].tolist())
+        if count == 0:
+            return [], asked
         out = self._gaps, self._ink, self._back, self._links, self._parts
         found = [
             (gap, long, back, [(end // 2, end % 2 == 1) for end in row[:parts]])
             for gap, long, back, row, parts in zip(*(of[:count].tolist() for of in out), strict=True)
         ]
-        return found, set(self._asked[1 : 1 + self._asked[0]].tolist())
+        return found, asked
 
     def open_ways(self, start: int) -> tuple[list[Chain], set[End]]:
         """Orders of two pieces or more, of which `start` is at an end, whose ends meet but for those of the

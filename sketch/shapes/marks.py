@@ -56,8 +56,9 @@ def read_cross(page: Page, names: tuple[int, ...], most: float = math.inf) -> Fi
     count = sum(p.observations for p in parts)
     best = None
     single = len(parts) == 1
+    rough_by = [[misfit_of(p, square) for square in p.residual[:6]] for p in parts]  # by number of sides
     for bends in ((3,), (4,), (5,)) if single else ((1, 1), (1, 2), (2, 1), (1, 3), (3, 1), (2, 2)):
-        off = sum(misfit_of(p, p.residual[n]) for p, n in zip(parts, bends, strict=True))
+        off = sum(by[n] for by, n in zip(rough_by, bends, strict=True))
         if CROSS + off > most and not single:
             continue
         sides = [
@@ -216,7 +217,8 @@ def with_strays(page: Page, mark: Fitted, free: Mapping[int, float]) -> list[Fit
     """
     if mark.figure is None or mark.cost > sum(free[i] for i in mark.pieces):
         return []
-    reach = STRAY * math.dist(mark.figure.min(axis=0), mark.figure.max(axis=0))
+    x, y = mark.figure.T.tolist()
+    reach = STRAY * math.hypot(max(x) - min(x), max(y) - min(y))
     near = [
         p
         for p in page.along(mark.figure, reach)
@@ -227,8 +229,9 @@ def with_strays(page: Page, mark: Fitted, free: Mapping[int, float]) -> list[Fit
     squares = off_outline(page.strokes, [p.stroke for p in near], mark.figure) if near else []
     for p, off in zip(near, squares, strict=True):
         cost = PARAMETER + RETRACE * p.observations + misfit_of(p, off, p.extent / 2)
-        if mark.kind == "arrow" and p.extent < SMALL * shaft and _within(page, p, mark.figure[[1, 2, 4]]):
-            cost = min(cost, PARAMETER + HEAD * p.observations)
-        if cost < free[p.index]:
+        most, in_head = free[p.index], PARAMETER + HEAD * p.observations
+        if mark.kind == "arrow" and in_head < min(cost, most) and p.extent < SMALL * shaft:
+            cost = in_head if _within(page, p, mark.figure[[1, 2, 4]]) else cost
+        if cost < most:
             costs[p.index] = cost
     return mark.together(costs)

@@ -57,6 +57,7 @@ _SAID = [2 * k * CORNER - USUAL.get(k, 0.0) for k in range(MOST_SIDES + 1)]  # n
 _NEARLY_SAID = [
     6 * CORNER + (2 * k - 6) * NEARLY for k in range(MOST_SIDES + 1)
 ]  # if they are nearly regular
+_ROOTS = {k: [cmath.exp(2j * math.pi * j / k) for j in range(k)] for k in range(FEWEST, MOST + 1)}  # of one
 _ANGLES = np.linspace(0, 2 * math.pi, 24, endpoint=False)
 _RING = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
 
@@ -122,11 +123,11 @@ def _read(
     fitted = partial(Fitted, pieces=names, scale=scale, narrow=narrow, gap=fit.gap / fit.ink)
     said = _SAID.copy()
     if math.isfinite(fit.cost[4]):
-        said[4] += min(0.5 * (_unlike(fit.vertices(4)) / ALIKE) ** 2, IRREGULAR)
+        said[4] += min(0.5 * (_unlike(fit.corners[4, :4]) / ALIKE) ** 2, IRREGULAR)
     points, rough = _few(parts, [pieces[i].given for i in names]), fit.cost
     if points:
         rough = [c + _too_near(fit.residual[k], count, k, points) for k, c in enumerate(rough)]
-    total = [sum(nats) for nats in zip(rough, fit.lacks, said, strict=True)]
+    total = [far + lacks + own for far, lacks, own in zip(rough, fit.lacks, said, strict=True)]
     least = min(total[3:])
     for k in range(FEWEST, MOST + 1):
         clean = _NEARLY_SAID[k] - said[k]
@@ -147,7 +148,7 @@ def _read(
     # what turns beside the corners speaks against few of them, where there are points enough to see it
     off = [straight] * (MOST_SIDES + 1)
     off[3], off[4] = (0.0 if points else _turning(fit, k, between)[1] for k in (3, 4))
-    told = total if points else [sum(nats) for nats in zip(total, off, strict=True)]
+    told = total if points else [nats + more for nats, more in zip(total, off, strict=True)]
     sides, second = sorted(range(3, MOST_SIDES + 1), key=told.__getitem__)[:2]
     if sides < FEWEST:
         evenly = 0.0
@@ -239,8 +240,8 @@ def _irregular(fit: ClosedFit, k: int) -> float:
     for x, y in fit.corners[k, :k].tolist():
         x, y = x - mean.real, y - mean.imag
         corners.append(complex(s * x - q * y, p * y - r * x) / det)
-    turns = [cmath.exp(2j * math.pi * j / k) for j in range(k)]
-    found = [sum(z * turns[j * f % k] for j, z in enumerate(corners)) for f in range(2, k - 1)]
+    roots = _ROOTS[k]
+    found = [sum(z * roots[j * f % k] for j, z in enumerate(corners)) for f in range(2, k - 1)]
     off2 = math.fsum(abs(z) ** 2 for z in found) / k
     return 0.5 * off2 / REGULAR**2
 
@@ -248,7 +249,9 @@ def _irregular(fit: ClosedFit, k: int) -> float:
 def _unlike(corners: Array) -> float:
     """The least angle between opposite sides of a quadrilateral [rad]."""
     a, b, c, d = (complex(x, y) for x, y in corners.tolist())
-    return min(abs(cmath.phase((q - p) * (r - s).conjugate())) for p, q, r, s in ((a, b, c, d), (b, c, d, a)))
+    return min(
+        abs(cmath.phase((b - a) * (c - d).conjugate())), abs(cmath.phase((c - b) * (d - a).conjugate()))
+    )
 
 
 def gone_over(page: Page, fitted: Fitted, pieces: Sequence[Piece]) -> list[float]:
@@ -297,17 +300,17 @@ def _round(
     fitted: makes a reading of what all readings of the outline have in common.
     """
     x, y, r = fit.circle
-    of_circle = partial(fitted, "circle", model=ROUND)
-    circle = of_circle(cost=fit.circle_cost + ROUND + gaps, outline=np.array([x, y]) + r * _RING)
+    at, price = np.array([x, y]), fit.circle_cost + ROUND + gaps
     if ellipse is None:
-        return [circle]
+        return [fitted("circle", cost=price, outline=at + r * _RING, model=ROUND)]
     middle, axes = ellipse
     (k, ll), (m, n) = axes.tolist()
     total, area = k * k + ll * ll + m * m + n * n, abs(k * n - ll * m)
     longer = math.acosh(max(total / (2 * area), 1.0))  # log of the half axes' ratio
     cost = fit.ellipse_cost + ROUND + gaps
-    if cost + 0.5 * (longer / UNROUND) ** 2 < circle.cost:
-        ring = middle + math.sqrt(area) * _RING
-        circle = of_circle(cost=cost + 0.5 * (longer / UNROUND) ** 2, outline=ring)
-    outline = middle + _RING @ axes.T
-    return [circle, fitted("ellipse", cost=cost + ELLIPSE, outline=outline, model=ROUND + ELLIPSE)]
+    if cost + 0.5 * (longer / UNROUND) ** 2 < price:
+        at, r, price = middle, math.sqrt(area), cost + 0.5 * (longer / UNROUND) ** 2
+    return [
+        fitted("circle", cost=price, outline=at + r * _RING, model=ROUND),
+        fitted("ellipse", cost=cost + ELLIPSE, outline=middle + _RING @ axes.T, model=ROUND + ELLIPSE),
+    ]

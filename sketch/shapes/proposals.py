@@ -119,7 +119,8 @@ class Proposed:
     @cached_property
     def ends(self) -> list[tuple[int, list[list[float]]]]:
         """The ends of each bar, with which of the candidates it is [pixels]."""
-        return [(k, self.candidates[k].outline[[0, -1]].tolist()) for k in self.bars]
+        lines = ((k, self.candidates[k].outline) for k in self.bars)
+        return [(k, line[:: len(line) - 1].tolist()) for k, line in lines]
 
     @cached_property
     def borrowing(self) -> bool:
