@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,7 +21,8 @@ OVERSHOOT = 2.5  # pen widths that a line may go on past its corner
 DOUBLE = 1.3  # pen widths: wider ink is that of two lines
 MERGED = 10.0  # pen widths that two lines from one tip may be one
 STRAIGHT_ON = 0.8  # cosine of the angle between a tip and the lines that go on from it
-TWIG = 1.5  # radii of a node's ink: an end that reaches less far beyond it is thinning's
+ONWARD = 0.5  # cosine of the angle between a line and what goes on from it past a corner
+TWIG = 0.5  # pen widths: an end whose ink reaches less far beyond its node's is thinning's
 PINHOLE = 4.0  # radii of a node's ink: a shorter ring at it is around a hole of a pixel or two
 LEAST_SINE = 0.2  # of the angle at which two lines meet in a corner
 
@@ -105,13 +107,13 @@ def build_graph(chains: Chains, distance: NDArray[Any], pen: float) -> Graph:
         head, tail = (chains.nodes[end : end + 1] if end >= 0 else points[:0] for end in ends)
         closed = points[:1] if ends == RING else points[:0]
         graph.edges.append(Edge(np.concatenate([head, points, tail, closed]), ends))
-    _drop_twigs(graph)
+    _drop_twigs(graph, distance, pen)
     _drop_overshoots(graph, pen)
     _turn_hairpins(graph, distance, pen)
     return graph
 
 
-def _drop_twigs(graph: Graph) -> None:
+def _drop_twigs(graph: Graph, distance: NDArray[Any], pen: float) -> None:
     """Drop the edges that end freely within the ink of their own node: thinning's, not the pen's.
 
     Tiny rings at one node go too: they are holes of a pixel or two.
@@ -120,8 +122,10 @@ def _drop_twigs(graph: Graph) -> None:
     for edge in graph.edges:
         a, b = edge.ends
         if (a >= 0) != (b >= 0):
-            reach = TWIG * graph.radius[max(a, b)] + 1
-            if edge.length < reach:
+            node, tip = max(a, b), edge.points[-1 if a >= 0 else 0]
+            x, y = np.round(tip).astype(int).tolist()
+            beyond = math.dist(tip, graph.nodes[node]) + float(distance[y, x]) - graph.radius[node]
+            if beyond < TWIG * pen + 1:  # and a pixel's bump
                 continue
         elif a == b and a >= 0 and edge.length < PINHOLE * graph.radius[a]:
             continue
@@ -147,6 +151,8 @@ def _drop_overshoots(graph: Graph, pen: float) -> None:
         rest = [end for end in meeting if end[0] not in short]
         if not short or len(rest) != 2:
             continue
+        if not all(_goes_on(graph, node, e, rest, pen) for e in short):
+            continue
         longest = max(graph.edges[e].length for e in short)
         apart = rest[0][0] != rest[1][0]
         far = LONGER_THAN_TIP if len(short) == 1 else LONGER_THAN_ARMS if apart else LONGER_THAN_LOOP
@@ -157,6 +163,14 @@ def _drop_overshoots(graph: Graph, pen: float) -> None:
                 corners[node] = corner
     graph.edges = [edge for e, edge in enumerate(graph.edges) if e not in gone]
     _join_passed_nodes(graph, corners)
+
+
+def _goes_on(graph: Graph, node: int, short: int, lines: list[End], pen: float) -> bool:
+    """Whether a short end at a node goes on from one of the lines there: a barb of an arrow does not."""
+    centre, reach = graph.nodes[node], graph.radius[node] + 1
+    points = graph.edges[short].points
+    ahead = _unit(points[0 if graph.edges[short].ends[0] == -1 else -1] - centre)
+    return any(heading(graph.outward(end), centre, reach, SIGHT * pen)[1] @ ahead < -ONWARD for end in lines)
 
 
 def _turn_hairpins(graph: Graph, distance: NDArray[Any], pen: float) -> None:

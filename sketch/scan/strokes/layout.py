@@ -19,7 +19,7 @@ from sketch.typing import Points
 __all__ = ["CRUMB", "Layout"]
 
 SHARED_SIDE = 0.45  # an outline may borrow this share of its length from ink that it rests on
-CRUMB = 2.0  # pen widths: a piece shorter than this that starts at other ink is part of that
+CRUMB = 1.0  # pen widths for each end at other ink: a shorter piece is part of that
 GAP = 3.0  # pen widths: hardly a gap between the ends of an outline, whatever is there
 ACROSS = 8.0  # radii of a ring: what it is a pivot of is no wider there, or is not told by it
 BETWEEN = 0.3  # of the way from one line to the other: a ring so near to its middle is between them
@@ -148,7 +148,8 @@ class Layout:
 
     def is_crumb(self, course: Course) -> bool:
         """Whether a course lies within the ink of the junctions at its ends."""
-        return not course.closed and max(self.ends(course)) >= 0 and self.length(course) < CRUMB * self.pen
+        met = sum(end >= 0 for end in self.ends(course))
+        return not course.closed and self.length(course) < CRUMB * met * self.pen
 
     def loan(self, course: Course) -> tuple[Points, list[int]] | None:
         """Other ink that leads from an open course's end back to its beginning: its points and edges."""

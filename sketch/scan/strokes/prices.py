@@ -170,7 +170,7 @@ def lines(ways: list[Way], pen: float) -> dict[int, int]:
     return {
         name: count
         for (name, points), count in zip(ink.items(), met, strict=True)
-        if not count or course_length(points) > CRUMB * pen
+        if course_length(points) > CRUMB * count * pen
     }
 
 

@@ -60,6 +60,37 @@ def test_an_arrow_whose_pen_came_back_beside_a_barb_is_one_arrow(pen: float, bac
     assert abs(np.arctan2(scene.gravity[0], -scene.gravity[1])) < 0.2
 
 
+@pytest.mark.parametrize("pen", [4.0, 5.5, 9.0])
+@pytest.mark.parametrize("gap", [0.7, 1.0])
+@pytest.mark.parametrize("turn", [0.0, 0.15])
+def test_an_x_of_a_few_pen_widths_that_touches_a_side_anchors_its_box(
+    pen: float, gap: float, turn: float
+) -> None:
+    """Its arms are two pen widths long: no ink of the side, nor a tail of the box's outline."""
+    half = 2 * pen
+    middle = np.array([250.0, 204 + gap * pen + half * np.sin(np.pi / 4)])
+    arms = half * np.array([[np.cos(a), np.sin(a)] for a in turn + np.pi / 4 * np.array([1, 3])])
+    bars: list[Line] = [[tuple(middle - arm), tuple(middle + arm)] for arm in arms]
+    scene = read([BOX, *bars], pen)
+    assert kinds(scene) == ["rectangle"]
+    assert scene.bodies[0].anchored
+
+
+@pytest.mark.parametrize(("pen", "barb", "open_"), [(4.0, 3.0, 0.9), (7.0, 2.5, 0.7)])
+@pytest.mark.parametrize("shaft", [70, 100])
+def test_a_barb_of_a_few_pen_widths_is_no_overshoot(
+    pen: float, barb: float, open_: float, shaft: float
+) -> None:
+    tip = (450.0, 60.0 + shaft)
+    ends = [
+        (tip[0] + side * long * np.sin(a), tip[1] - long * np.cos(a))
+        for side, long, a in ((-1, barb * pen, open_), (1, 1.05 * barb * pen, open_ + 0.1))
+    ]
+    scene = read([BOX, [(452, 60), tip], [ends[0], tip, ends[1]]], pen)
+    assert kinds(scene) == ["rectangle"]
+    assert abs(np.arctan2(scene.gravity[0], -scene.gravity[1])) < 0.2
+
+
 def traced(lines: list[Line], pen: float, *, sharpened: bool = True) -> Graph:
     mask = (inked(lines, pen) > 0.5).astype(np.uint8)
     skeleton, size = thin(mask)
