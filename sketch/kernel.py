@@ -302,21 +302,23 @@ def cuts(points: Array) -> tuple[list[float], list[int]]:
 
 
 def course(points: Array, pen: float) -> Array | None:
-    """An open line, (n, 2), as COURSE sides in equal steps; None where it crosses itself.
+    """An open line, (n, 2), as COURSE sides at most; None where it crosses itself.
 
     pen: what it is at least as thick as [pixels].
     """
     line = np.empty((COURSE + 1, 2))
     given = np.ascontiguousarray(points)
-    return line if _course(address(given), len(given), pen, address(line)) else None
+    count = _course(address(given), len(given), pen, address(line))
+    return line[:count].copy() if count else None
 
 
 def course_around(points: Array) -> Array | None:
-    """Ink that goes once around, (n, 2), as a closed outline of COURSE corners in equal steps, without what runs beyond
-    its closing [pixels]; None where it crosses itself."""
-    outline, along = np.empty((COURSE, 2)), np.empty(len(points))
+    """Ink that goes once around, (n, 2), as a closed outline of COURSE corners at most, without what runs beyond its
+    closing [pixels]; None where it crosses itself."""
+    outline, scratch = np.empty((COURSE, 2)), np.empty(3 * len(points) + 6)
     given = np.ascontiguousarray(points)
-    return outline if _around(address(given), len(given), address(along), address(outline)) else None
+    count = _around(address(given), len(given), address(scratch), address(outline))
+    return outline[:count].copy() if count else None
 
 
 def off_outline(strokes: Strokes, names: Sequence[int], outline: Array) -> list[float]:

@@ -2,15 +2,21 @@
 #include "fit.h"
 
 #include <math.h>
+#include <string.h>
 
-enum { COURSE = 32, DENSE = 4 * COURSE }; /* sides that it is drawn with, and places along it that are looked at */
+enum {
+    COURSE = 32,
+    DENSE = 4 * COURSE
+}; /* sides that it is drawn with at most, and places along it where it may close */
+static const double CLOSE =
+    0.002; /* of its extent: ink that is no further off is followed; so is a circle with 32 sides */
 
-/* The outline of a polyline, (COURSE + 1, 2), drawn with a pen so wide, mitred at its corners: (2 * COURSE + 2, 2). */
-static void thicken(const double *line, double pen, double *outline) {
+/* The outline of a polyline, (count, 2), drawn with a pen so wide, mitred at its corners: (2 * count, 2). */
+static void thicken(const double *line, int count, double pen, double *outline) {
     double before[2] = {0, 0};
-    for (int i = 0; i <= COURSE; i++) {
+    for (int i = 0; i < count; i++) {
         double normal[2] = {0, 0}, mitre[2];
-        if (i < COURSE) {
+        if (i < count - 1) {
             double dx = line[2 * i + 2] - line[2 * i], dy = line[2 * i + 3] - line[2 * i + 1], l = length(dx, dy);
             l = l > 1e-9 ? l : 1e-9;
             normal[0] = -(dy / l);
@@ -18,7 +24,7 @@ static void thicken(const double *line, double pen, double *outline) {
         }
         mitre[0] = before[0] + normal[0];
         mitre[1] = before[1] + normal[1];
-        if (i > 0 && i < COURSE) {
+        if (i > 0 && i < count - 1) {
             double square = mitre[0] * mitre[0] + mitre[1] * mitre[1], by = (square > 0.5 ? square : 0.5) / 2;
             mitre[0] /= by;
             mitre[1] /= by;
@@ -26,29 +32,65 @@ static void thicken(const double *line, double pen, double *outline) {
         for (int e = 0; e < 2; e++) {
             double side = mitre[e] * pen / 2;
             outline[2 * i + e] = line[2 * i + e] + side;
-            outline[2 * (2 * COURSE + 1 - i) + e] = line[2 * i + e] - side;
+            outline[2 * (2 * count - 1 - i) + e] = line[2 * i + e] - side;
             before[e] = normal[e];
         }
     }
 }
 
-/* xy: points of a stroke [pixels], (n, 2), n > 1.  pen: what it is at least as thick as [pixels].
- * Out: line: (COURSE + 1, 2) in equal steps along it. Returns whether it nowhere crosses itself. */
-INK_API int32_t ink_course(const double *xy, int32_t n, double pen, double *line) {
-    double total = 0, done = 0, outline[4 * (COURSE + 1)];
-    for (int j = 1; j < n; j++) total += length(xy[2 * j] - xy[2 * j - 2], xy[2 * j + 1] - xy[2 * j - 1]);
-    for (int j = 1, k = 0; j < n; j++) {
-        const double *a = xy + 2 * j - 2, *b = xy + 2 * j;
-        double l = length(b[0] - a[0], b[1] - a[1]), next = done + l;
-        for (; k < COURSE && k * (total / COURSE) < next; k++)
-            for (int e = 0; e < 2; e++)
-                line[2 * k + e] = (b[e] - a[e]) / (next - done) * (k * (total / COURSE) - done) + a[e];
-        done = next;
+/* The point between two of a polyline's that is farthest from the straight line between them; how far that is. */
+static int farthest(const double *xy, int from, int to, double *far) {
+    int at = from;
+    *far = 0;
+    for (int i = from + 1; i < to; i++) {
+        double off = segment_distance2(xy[2 * i], xy[2 * i + 1], xy + 2 * from, xy + 2 * to);
+        if (off > *far) {
+            *far = off;
+            at = i;
+        }
     }
-    line[2 * COURSE] = xy[2 * n - 2];
-    line[2 * COURSE + 1] = xy[2 * n - 1];
-    thicken(line, pen, outline);
-    return ink_is_simple(outline, 2 * COURSE + 2);
+    *far = sqrt(*far);
+    return at;
+}
+
+/* The corners of a polyline: its ends, and then always the point that is farthest from the line so far, until none is far or
+ * there are `most` sides (after Ramer 1972). xy: (n, 2).  Out: line: (most + 1, 2). Returns how many points it has. */
+static int with_few_sides(const double *xy, int n, int most, double *line) {
+    int at[COURSE + 1] = {0, n - 1}, next[COURSE], sides = 1;
+    double off[COURSE], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int i = 0; i < 2 * n; i++) {
+        low[i % 2] = fmin(low[i % 2], xy[i]);
+        high[i % 2] = fmax(high[i % 2], xy[i]);
+    }
+    const double close = CLOSE * hypot(high[0] - low[0], high[1] - low[1]);
+    next[0] = farthest(xy, 0, n - 1, &off[0]);
+    while (sides < most) {
+        int worst = 0;
+        for (int k = 1; k < sides; k++)
+            if (off[k] > off[worst]) worst = k;
+        if (off[worst] <= close) break;
+        for (int k = sides++; k > worst; k--) {
+            at[k + 1] = at[k];
+            if (k > worst + 1) {
+                next[k] = next[k - 1];
+                off[k] = off[k - 1];
+            }
+        }
+        at[worst + 1] = next[worst];
+        for (int k = worst; k < worst + 2; k++) next[k] = farthest(xy, at[k], at[k + 1], &off[k]);
+    }
+    for (int k = 0; k <= sides; k++)
+        for (int e = 0; e < 2; e++) line[2 * k + e] = xy[2 * at[k] + e];
+    return sides + 1;
+}
+
+/* xy: points of a stroke [pixels], (n, 2), n > 1.  pen: what it is at least as thick as [pixels].
+ * Out: line: room for (COURSE + 1, 2). Returns how many points it has, or 0 where it crosses itself. */
+INK_API int32_t ink_course(const double *xy, int32_t n, double pen, double *line) {
+    double outline[4 * (COURSE + 1)];
+    const int count = with_few_sides(xy, n, COURSE, line);
+    thicken(line, count, pen, outline);
+    return ink_is_simple(outline, 2 * count) ? count : 0;
 }
 
 /* Places in equal steps along a polyline, the first and the last at its ends: line is (count, 2).  along: room for n lengths. */
@@ -68,12 +110,13 @@ static void in_steps(const double *xy, int32_t n, double *along, double *line, i
     }
 }
 
-/* xy: points of ink that goes once around [pixels], (n, 2), n > 1.  along: room for n numbers.
- * Out: outline: (COURSE, 2), closed, in equal steps along it, without what runs beyond where its ends are nearest to each
- * other. Returns whether it nowhere crosses itself. */
-INK_API int32_t ink_course_around(const double *xy, int32_t n, double *along, double *outline) {
-    double dense[2 * DENSE], least = INFINITY;
-    int first = 0, last = 0;
+/* xy: points of ink that goes once around [pixels], (n, 2), n > 1.  scratch: room for 3 n + 6 numbers.
+ * Out: outline: room for (COURSE, 2), closed, without what runs beyond where its ends are nearest to each other. Returns how
+ * many corners it has, or 0 where it crosses itself. */
+INK_API int32_t ink_course_around(const double *xy, int32_t n, double *scratch, double *outline) {
+    double dense[2 * DENSE], line[2 * (COURSE + 1)], least = INFINITY;
+    double *along = scratch, *once = scratch + n;
+    int first = 0, last = 0, count = 0;
     in_steps(xy, n, along, dense, DENSE);
     for (int i = 0; i < COURSE / 2; i++)
         for (int j = DENSE - COURSE / 2; j < DENSE; j++) {
@@ -84,11 +127,13 @@ INK_API int32_t ink_course_around(const double *xy, int32_t n, double *along, do
                 last = j;
             }
         }
-    const double step = (double)(last + 1 - first) / COURSE;
-    for (int k = 0; k < COURSE; k++) {
-        const double *p = dense + 2 * (first + (int)(k * step));
-        outline[2 * k] = p[0];
-        outline[2 * k + 1] = p[1];
-    }
-    return ink_is_simple(outline, COURSE);
+    const double step = along[n - 1] / (DENSE - 1), begin = first * step, end = last * step;
+    memcpy(once, dense + 2 * first, 2 * sizeof *once);
+    for (int i = 0; i < n; i++)
+        if (along[i] > begin && along[i] < end) memcpy(once + 2 * ++count, xy + 2 * i, 2 * sizeof *once);
+    memcpy(once + 2 * ++count, dense + 2 * last, 2 * sizeof *once);
+    memcpy(once + 2 * ++count, once, 2 * sizeof *once); /* and back to where it begins */
+    const int corners = with_few_sides(once, count + 1, COURSE, line) - 1;
+    memcpy(outline, line, 2 * (size_t)corners * sizeof *line);
+    return corners > 2 && ink_is_simple(outline, corners) ? corners : 0;
 }

@@ -28,6 +28,33 @@ def nearest(found: np.ndarray, wanted: list[tuple[float, float]]) -> float:
     return max(float(np.hypot(*(found - w).T).min()) for w in np.array(wanted))
 
 
+def rounded(vertices: list[tuple[float, float]], share: float) -> np.ndarray:
+    """A polygon's outline whose sides end in arcs that begin at such a share of them."""
+    v = np.array(vertices, dtype=float)
+    t = np.linspace(0, 1, 12)[:, None]
+    arcs = []
+    for a, b, c in zip(np.roll(v, 1, axis=0), v, np.roll(v, -1, axis=0), strict=True):
+        p, q = b + share * (a - b), b + share * (c - b)
+        arcs.append((1 - t) ** 2 * p + 2 * t * (1 - t) * b + t**2 * q)
+    ink = np.concatenate([*arcs, arcs[0][:1]])
+    return ring([(x, y) for x, y in ink[:-1].tolist()], 200)
+
+
+@pytest.mark.parametrize("n", [4, 5, 6])
+def test_corners_that_the_ink_stays_off_speak_against_a_polygon(n: int) -> None:
+    v = ngon(n, 300, 200, 100)
+    costs = [fit(rounded(v, share)).cost[n] for share in (0.02, 0.15, 0.3, 0.45)]
+    assert costs == sorted(costs)
+    assert costs[3] - costs[0] > 12
+
+
+def test_a_corner_that_was_not_drawn_is_not_round() -> None:
+    whole = ring([(0, 0), (200, 0), (200, 200), (0, 200)], 200)
+    corner, side = whole[10:190], np.roll(whole[:-1], 25, axis=0)[10:190]
+    at_corner, at_side = fit(corner), fit(side)
+    assert at_corner.cost[4] - at_side.cost[4] < 1
+
+
 @pytest.mark.parametrize("n", [3, 4, 5, 6, 8])
 def test_corners_of_a_polygon(n: int) -> None:
     v = ngon(n, 300, 200, 100)

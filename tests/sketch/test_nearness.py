@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from pages import measured, page
 
-from sketch.kernel import beside, course_around, fit_closed, gap, lent, measure, off_outline
+from sketch.kernel import beside, course, course_around, depth, fit_closed, gap, lent, measure, off_outline
 from sketch.page.loose import LooseEnds
 from sketch.page.pieces import Page
 
@@ -155,6 +155,27 @@ def test_a_course_around_ends_where_it_closes() -> None:
     assert angles[-1] - angles[0] < 2 * math.pi < angles[-1] - angles[0] + 0.4
     eight = np.stack([100 * np.sin(t), 50 * np.sin(2 * t)], axis=1)
     assert course_around(eight) is None
+
+
+def test_a_course_has_its_corners_where_the_ink_turns() -> None:
+    t = np.linspace(0, 1, 70)[:, None]
+    a, b, c = np.array([[0.0, 0.0], [310.0, 140.0], [500.0, 20.0]])
+    valley = np.concatenate([a + t * (b - a), b + t[1:] * (c - b)])
+    np.testing.assert_allclose(course(valley, 2.0), [a, b, c])
+    step = np.array(
+        [(0, 0), (500, 0), (500, 40), (430, 40), (430, 90), (370, 90), (370, 170), (0, 170)], float
+    )
+    sides = [p + t[:-1] * (q - p) for p, q in zip(step, np.roll(step, -1, axis=0), strict=True)]
+    np.testing.assert_allclose(course_around(np.concatenate([*sides, step[:1]])), step)
+
+
+def test_a_course_of_something_round_is_close_to_it_with_few_sides() -> None:
+    t = np.linspace(0, 2 * math.pi, 400)
+    hills = 100 * (1 + 0.3 * np.cos(5 * t))[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1)
+    outline = course_around(hills)
+    assert outline is not None
+    assert len(outline) <= 32
+    assert max(abs(depth(x, y, outline)) for x, y in hills.tolist()) < 3
 
 
 def test_bodies_beside_marks_however_many() -> None:
