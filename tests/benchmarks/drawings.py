@@ -15,13 +15,14 @@ from sim.scene import Body, Circle, Polygon, Scene
 from sketch import Sketch, Stroke
 from sketch.synthetic import HANDS, Hand, arrow, circle, cross, curve, ellipse, line, outline
 
-__all__ = ["Drawing", "Joined", "Meant", "differences", "matched", "overlap", "writer"]
+__all__ = ["Drawing", "Joined", "Meant", "differences", "is_as_drawn", "matched", "overlap", "writer"]
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 WIDTH, HEIGHT = 1280.0, 720.0
 SAME = 0.7  # overlap of two outlines from which on they are one body
+ASTRAY = 0.1  # of its ink's extent: what is no further off it, either way, goes along it
 THIN = 0.12  # of its extent: an open line counts as so thick when overlaps are measured
 NEAR = 0.012  # of the page's width: how far from its place a pivot may be found
 STEEP = math.radians(15)  # how far gravity may be off
@@ -245,6 +246,26 @@ def overlap(a: Array, b: Array, is_open: bool = False) -> float:
             cv2.fillPoly(mask, [points], 1)
         masks.append(mask)
     return np.count_nonzero(masks[0] & masks[1]) / max(np.count_nonzero(masks[0] | masks[1]), 1)
+
+
+def is_as_drawn(drawing: Drawing, scene: Scene, body: Body) -> bool:
+    """Whether a body's outline goes along the ink that it was read from, and along all of that.
+
+    By the conventions whatever is closed is a body, be it a heart; but as a triangle it is a wrong one.
+    """
+    scale = scene.view.pixels_per_metre if scene.view else 1.0
+    rim = np.array(body.outline()) * [scale, -scale]
+    ink = np.concatenate([_dense(drawing.strokes[k]) for k in body.strokes or []])
+    apart = np.hypot(*(_dense(np.concatenate([rim, rim[:1]]))[:, None] - ink).transpose(2, 0, 1))
+    far = max(apart.min(axis=0).max(), apart.min(axis=1).max())
+    return bool(far < ASTRAY * np.hypot(*np.ptp(ink, axis=0)))
+
+
+def _dense(line: Array) -> Array:
+    """So many points along a line that the ways between them do not matter."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    t = np.linspace(0, along[-1], 200)
+    return np.stack([np.interp(t, along, line[:, k]) for k in (0, 1)], axis=1)
 
 
 def matched(drawing: Drawing, scene: Scene) -> dict[int, tuple[int, float]]:

@@ -24,7 +24,7 @@ from cli.progress import Progress
 from sim.scene import Body, Circle, Polygon
 from sketch import Recognition, Sketch, Stroke, load_sketch, recognize
 from tests.benchmarks import corpus, pictured
-from tests.benchmarks.drawings import Drawing, Meant, differences, matched, writer
+from tests.benchmarks.drawings import Drawing, Meant, differences, is_as_drawn, matched, writer
 from tests.benchmarks.effort import effort, resampled
 from tests.benchmarks.mechanisms import KINDS, NONSENSE, draw, nonsense
 from tests.benchmarks.shapes import CARELESS, SHAPES, draw_shape
@@ -388,6 +388,7 @@ def _count_strays(bench: Bench, tally: Counter[str], drawing: Drawing, strokes: 
     named = set().union(*(r.strokes for r in j.recognition.readings if r.kind == "unread"))
     tally["count"] += 1
     tally["body"] += bool(invented)
+    tally["wrong"] += not all(is_as_drawn(drawing, scene, b) for b in invented)
     tally["changed"] += bool(others)
     tally["silent"] += not stray <= read | named
     if invented or others:
@@ -395,12 +396,13 @@ def _count_strays(bench: Bench, tally: Counter[str], drawing: Drawing, strokes: 
 
 
 def _print_strays(title: str, tally: dict[str, Counter[str]]) -> None:
-    print(f"\n{title}: taken for a body, and anything else changed")
+    print(f"\n{title}: a body, of these not as it was drawn, and anything else changed")
     every: Counter[str] = Counter()
     for name, t in sorted(tally.items()):
         every.update(t)
-        print(f"  {name:<28}{t['body']:5} {t['changed']:5} of {t['count']:4}")
+        print(f"  {name:<28}{t['body']:5} {t['wrong']:5} {t['changed']:5} of {t['count']:4}")
     print(f"  {'a body':<28}{rate(every['body'], every['count'])}")
+    print(f"  {'a body, and not as drawn':<28}{rate(every['wrong'], every['count'])}")
     print(f"  {'anything else changed':<28}{rate(every['changed'], every['count'])}")
     print(f"  {'neither read nor named':<28}{rate(every['silent'], every['count'])}")
 

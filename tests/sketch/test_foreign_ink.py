@@ -84,14 +84,37 @@ def test_foreign_ink_changes_nothing(name: str, seed: int) -> None:
     assert all(str(s) in notes for s in range(first, first + len(ink)))
 
 
+def heart() -> np.ndarray:
+    t = np.linspace(0, 2 * math.pi, 80)
+    x, y = 16 * np.sin(t) ** 3, 13 * np.cos(t) - 5 * np.cos(2 * t) - 2 * np.cos(3 * t) - np.cos(4 * t)
+    return np.stack([500 + 6 * x, 300 - 6 * y], axis=1)
+
+
+def arch() -> np.ndarray:
+    t = np.linspace(0, math.pi, 40)
+    outer = np.stack([500 - 90 * np.cos(t), 300 - 90 * np.sin(t)], axis=1)
+    inner = np.stack([500 + 45 * np.cos(t), 300 - 45 * np.sin(t)], axis=1)
+    foot = np.linspace(0, 70, 15)[:, None] * [0, 1]
+    closed = [outer, outer[-1] + foot, inner[0] + foot[::-1], inner, inner[-1] + foot, outer[0] + foot[::-1]]
+    return np.concatenate(closed)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_closed_course_is_a_body_as_it_was_drawn(seed: int) -> None:
     """A heart is no triangle: its polygon follows the ink."""
-    t = np.linspace(0, 2 * math.pi, 80)
-    x, y = 16 * np.sin(t) ** 3, 13 * np.cos(t) - 5 * np.cos(2 * t) - 2 * np.cos(3 * t) - np.cos(4 * t)
-    path = np.stack([500 + 6 * x, 300 - 6 * y], axis=1)
+    path = heart()
     scene = recognize(page(curve(path, HAND, np.random.default_rng(seed)))).scene
-    (heart,) = scene.bodies
-    outline = np.ascontiguousarray((np.array(heart.shape.vertices) + heart.position) * [128, -128])
+    (body,) = scene.bodies
+    outline = np.ascontiguousarray((np.array(body.shape.vertices) + body.position) * [128, -128])
     assert len(outline) > 6
     assert max(abs(depth(x, y, outline)) for x, y in path.tolist()) < 192 / 10
+
+
+@pytest.mark.parametrize("path", [heart(), arch()], ids=["heart", "arch"])
+def test_what_goes_in_bows_has_no_corners_where_they_meet(path: np.ndarray) -> None:
+    followed = 0
+    for hand in HANDS.values():
+        for seed in range(4):
+            (reading,) = recognize(page(curve(path, hand, np.random.default_rng(seed)))).readings
+            followed += len(reading.outline) > 12
+    assert followed >= 16, followed  # of 20
