@@ -38,6 +38,7 @@ __all__ = [
     "place",
     "ring",
     "touch",
+    "within",
     "words",
 ]
 
@@ -73,6 +74,7 @@ _lend = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, *[_pointer] * 2, _double, 
 )
 _ring = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer, _pointer)(("ink_ring", _lib))
 _touch = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _int, *[_double] * 4)(("ink_touch", _lib))
+_within = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _double)(("ink_within", _lib))
 _gap = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int, _pointer)(("ink_gap", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 _depths = ctypes.CFUNCTYPE(None, _pointer, _int, _pointer, _int, _pointer)(("ink_depths", _lib))
@@ -400,6 +402,11 @@ def gap(one: Array, other: Array) -> tuple[float, Point]:
 def touch(one: Array, other: Array, at: Point, reach: float, near: float) -> bool:
     """Whether two closed outlines, (n, 2), overlap or come nearer than `near` within `reach` of a point [pixels]."""
     return bool(_touch(address(one), len(one), address(other), len(other), *at, reach, near))
+
+
+def within(strokes: Strokes, name: int, triangle: Array, reach: float) -> bool:
+    """Whether a stroke is within a triangle, (3, 2), or beyond its sides by no more than `reach` [pixels]."""
+    return bool(_within(address(strokes.samples), name, address(triangle), reach))
 
 
 def words(

@@ -130,12 +130,14 @@ def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) 
     idle = [p for i, p in page.pieces.items() if i not in taken]
     elsewhere = _axes(arrows, ends, longs, [c for c, _ in likely if c.kind == "arrow"])
     elsewhere |= _two_headed(page, arrows, ends, longs, idle)
-    out = []
-    for k, arrow in enumerate(arrows):
-        its = (bodies[b] for b in np.flatnonzero(near[k]).tolist())
-        apart = [body for body in its if set(arrow.pieces).isdisjoint(body.pieces)]
-        out.append(math.inf if k in elsewhere else _beside(ends[k], float(longs[k]), apart))
-    return out
+    apart: list[list[Fitted]] = [[] for _ in arrows]
+    for k, b in np.argwhere(near).tolist():
+        if set(arrows[k].pieces).isdisjoint(bodies[b].pieces):
+            apart[k].append(bodies[b])
+    return [
+        math.inf if k in elsewhere else _beside(ends[k], long, apart[k]) if apart[k] else 0.0
+        for k, long in enumerate(longs.tolist())
+    ]
 
 
 def _beside(ends: Array, long: float, bodies: list[Fitted]) -> float:

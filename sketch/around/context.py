@@ -71,8 +71,9 @@ class Context:
             c: row for c, row in (self._bodies | bodies).items() if c not in bodies or c not in self._bodies
         }
         known = self._known if (size, drawn) == self._sizes else {}
-        changed = {k for k, _ in _beside(proposed, others)}
-        anew = [k for k, p in enumerate(proposed) if k in changed or p not in known]
+        stay = [k for k, p in enumerate(proposed) if p in known]
+        kept = set(stay).difference(stay[k] for k, _ in _beside([proposed[k] for k in stay], others))
+        anew = [k for k in range(len(proposed)) if k not in kept]
         near: dict[int, Around] = {k: {} for k in anew}
         every = list(bodies.items())
         for k, b in _beside([proposed[k] for k in anew], bodies):
@@ -102,8 +103,8 @@ def _held(proposed: list[Proposed], bodies: Around) -> dict[Fitted, int]:
     long = np.hypot(*along.T)[:, None]
     u, v = x - places[:, :1, 0], y - places[:, :1, 1]
     through = np.abs(along[:, :1] * v - along[:, 1:] * u) < THROUGH_RING * wide * long
-    away = np.hypot(places[:, :, :1] - x, places[:, :, 1:] - y)
-    its = (away < REACH * wide) & (through & (PINNED * wide < long))[:, None]
+    away2 = (places[:, :, :1] - x) ** 2 + (places[:, :, 1:] - y) ** 2
+    its = (away2 < (REACH * wide) ** 2) & (through & (PINNED * wide < long))[:, None]
     held = its.any(axis=2).sum(axis=1).tolist()
     return {line: count for (line, _), count in zip(ends, held, strict=True) if count}
 

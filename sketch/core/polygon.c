@@ -58,6 +58,19 @@ INK_API void ink_depths(const double *points, int32_t count, const double *outli
     for (int i = 0; i < count; i++) depths[i] = ink_depth(points[2 * i], points[2 * i + 1], outline, n);
 }
 
+/* Whether a stroke is within a triangle, (3, 2), or beyond its sides by no more than `reach` [pixels]. */
+INK_API int32_t ink_within(const double *samples, int32_t name, const double *triangle, double reach) {
+    const double *p = samples + 2 * SAMPLES * name;
+    const double side = turn(triangle, triangle + 2, triangle + 4) < 0 ? -1 : 1;
+    for (int q = 0; q < 3; q++) {
+        const double *a = triangle + 2 * q, *b = triangle + 2 * ((q + 1) % 3);
+        const double most = reach * fmax(length(b[0] - a[0], b[1] - a[1]), 1e-9);
+        for (int i = 0; i < SAMPLES; i++)
+            if (side * turn(a, b, p + 2 * i) < -most) return 0;
+    }
+    return 1;
+}
+
 /* Keep a point where it is nearer to the side from a to b than `best`, squared. */
 static void keep_nearer(const double *p, const double *a, const double *b, double *best, double at[2]) {
     const double off = segment_distance2(p[0], p[1], a, b);

@@ -1,4 +1,4 @@
-"""Where the pieces of a page lie, to be asked which of them are near something."""
+"""Where things lie on a page, its pieces above all, to be asked which of them are near something."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sketch.kernel import Strokes
 from sketch.library import address, library
 from sketch.typing import Array, Box, Point
 
-__all__ = ["Near"]
+__all__ = ["Boxes", "Near"]
 
 HEADS = 4  # as in core/heads.c
 
@@ -28,24 +28,39 @@ _reaching = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 2, *[_double] * 5, _point
 )
 
 
-class Near:
-    """The boxes and measures of all pieces, and where these are for the library, which is asked for them very often.
+class Boxes:
+    """Boxes, and where they are for the library, which is asked for them very often.
 
     Attributes:
-        boxes: (pieces, 4): least x and y, greatest x and y [pixels]; of one that was taken away NaN.
+        boxes: (n, 4): least x and y, greatest x and y [pixels]; NaN for none.
     """
+
+    def __init__(self, boxes: Array) -> None:
+        self.boxes = boxes
+        self._found = np.empty(max(len(boxes), 2 * HEADS + 2), dtype=np.int32)
+        self._at, self._into = address(boxes), address(self._found)
+
+    def touching(self, box: Box) -> list[int]:
+        """Those that have a point in one."""
+        return self._first(_touching(len(self.boxes), self._at, *box, self._into))
+
+    def _first(self, count: int) -> list[int]:
+        """The first so many of what was found."""
+        numbers: list[int] = self._found[:count].tolist()
+        return numbers
+
+
+class Near(Boxes):
+    """The boxes of all pieces, and their measures."""
 
     def __init__(self, boxes: Array, strokes: Strokes, sizes: Array, points: NDArray[np.int64]) -> None:
         """sizes: of each: what its distances from other ink are compared with [pixels].  points: of each where they
         are, and how many."""
-        self.boxes = boxes
+        super().__init__(boxes)
         self._arrays = strokes, sizes, points  # kept, as the library is told where they are
-        self._found = np.empty(max(len(boxes), 2 * HEADS + 2), dtype=np.int32)
         self._box, self._tips = np.empty(4), np.empty((2, 2))
-        self._at = address(boxes)
         self._samples, self._measure = address(strokes.samples), address(strokes.measure)
         self._sizes, self._points = address(sizes), address(points)
-        self._into = address(self._found)
         self._into_box, self._into_tips = address(self._box), address(self._tips)
 
     def along(self, outline: Array, reach: float) -> tuple[list[int], Box]:
@@ -55,10 +70,6 @@ class Near:
         count = _along(*of, address(outline), len(outline), reach, self._into_box, self._into)
         x0, y0, x1, y1 = self._box.tolist()
         return self._first(count), (x0, y0, x1, y1)
-
-    def touching(self, box: Box) -> list[int]:
-        """Those whose boxes have a point in one."""
-        return self._first(_touching(len(self.boxes), self._at, *box, self._into))
 
     def reaching(self, box: Box, reach: float) -> list[int]:
         """Those that may come within `reach` of two places, given the box around these [pixels] (see core/near.c)."""
@@ -80,8 +91,3 @@ class Near:
         _heads(*of, *rivals, shaft, self._into_tips, *limits, self._into, self._into + 8 * HEADS)
         *near, first, second = self._first(2 * HEADS + 2)
         return near[:first], near[HEADS : HEADS + second]
-
-    def _first(self, count: int) -> list[int]:
-        """The first so many of what was found."""
-        numbers: list[int] = self._found[:count].tolist()
-        return numbers

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-import statistics
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -71,7 +70,8 @@ def unevenness(parts: list[Array], middle: Array, axes: Array) -> float:
             ways = [cmath.rect(1.0, begin + share * by) for share in (0.0, 0.5, 1.0)]
             speeds = [math.hypot(q * w.real - p * w.imag, s * w.real - r * w.imag) for w in ways]
             steps.append(abs(by) * (speeds[0] + 4 * speeds[1] + speeds[2]) / 6)
-        usual = max(statistics.median(steps), 1e-9)
+        ordered, half = sorted(steps), len(steps) // 2
+        usual = max((ordered[half] + ordered[~half]) / 2, 1e-9)
         squares += sum(min(abs(step / usual - 1), ASTRAY) ** 2 for step in steps)
         count += len(steps)
     return math.sqrt(squares / count)

@@ -13,6 +13,7 @@ import numpy as np
 from sim.scene import Body, Circle, Polygon, Rectangle
 from sketch import kernel
 from sketch.kernel import depth, is_simple
+from sketch.page.near import Boxes
 from sketch.reading import Reading
 from sketch.typing import Array
 
@@ -60,13 +61,12 @@ class Bodies:
     def __init__(self, drawn: list[Drawn]) -> None:
         self.drawn = drawn
         boxes = [[*d.outline.min(axis=0), *d.outline.max(axis=0)] for d in drawn]
-        self._sides = np.ascontiguousarray(np.array(boxes).reshape(-1, 4).T)
+        self._boxes = Boxes(np.array(boxes, dtype=np.float64).reshape(-1, 4))
 
     def near(self, at: Array, reach: float) -> list[Drawn]:
         """Those whose bounding box, widened by `reach` [pixels], has the point, in order of drawing."""
-        (x, y), (left, low, right, high) = at.tolist(), self._sides
-        close = (left - reach <= x) & (right + reach >= x) & (low - reach <= y) & (high + reach >= y)
-        return [self.drawn[k] for k in np.flatnonzero(close).tolist()]
+        x, y = at.tolist()
+        return [self.drawn[k] for k in self._boxes.touching((x - reach, y - reach, x + reach, y + reach))]
 
 
 def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float) -> Drawn:

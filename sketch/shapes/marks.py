@@ -8,7 +8,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from sketch.kernel import ArrowFit, Shaft, fit_arrows, off_outline
+from sketch.kernel import ArrowFit, Shaft, fit_arrows, off_outline, within
 from sketch.page.pieces import Page, Piece
 from sketch.shapes.outlines import RETRACE
 from sketch.shapes.scoring import FREE, PARAMETER, Fitted, meaningless, misfit, misfit_of
@@ -198,16 +198,8 @@ def _within(page: Page, piece: Piece, head: Array) -> bool:
     """
     if piece.gap < LOOP * piece.length and piece.scale > THICK * piece.extent:
         return False
-    a, b, c = head
-    if (b[0] - a[0]) * (c[1] - a[1]) < (b[1] - a[1]) * (c[0] - a[0]):
-        b, c = c, b
-    reach = STRAY * (math.dist(a, b) + math.dist(a, c))
-    points = page.strokes.samples[piece.stroke]
-    for p, q in ((a, b), (b, c), (c, a)):
-        side = (q - p) / max(math.dist(p, q), 1e-9)
-        if ((points - p) @ np.array([-side[1], side[0]])).min() < -reach:
-            return False
-    return True
+    a, b, c = head.tolist()
+    return within(page.strokes, piece.stroke, head, STRAY * (math.dist(a, b) + math.dist(a, c)))
 
 
 def with_strays(page: Page, mark: Fitted, free: Mapping[int, float]) -> list[Fitted]:
