@@ -48,7 +48,7 @@ LENT = 1000  # points of a side that is lent, at most: MOST_STEPS of core/lend.c
 LIFT = 6  # numbers that a struct Lift of core/outline.h takes
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, *[_pointer] * 10)(
+_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, _pointer, _pointer)(
     ("ink_closed", _lib)
 )
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
@@ -171,7 +171,7 @@ class ArrowFit(NamedTuple):
     off: list[float]
 
 
-# of ink_closed's results, in order
+# of a struct Closed of core/outline.c, in order
 _COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1), 9, SIDES + 1)
 _OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
 
@@ -224,26 +224,27 @@ def fit_closed(
         side,
         hopeless,
         undrawn,
-        *[at + 8 * o for o in _OFFSETS],
+        at,
+        at + 8 * _OFFSETS[-1],
     )
     _, length, conic, residual, cost, lacks, corners, rectangle, turning, rest = _OFFSETS
     scalars = out[:corners].tolist()
     return ClosedFit(
-        mean=out[0:2],
-        back=out[6:10].reshape(2, 2),
-        ink=scalars[length],
-        gap=scalars[length + 1],
-        conic=out[conic : conic + 5],
-        ellipse_cost=scalars[conic + 5],
-        circle=(scalars[conic + 6], scalars[conic + 7], scalars[conic + 8]),
-        circle_cost=scalars[conic + 9],
-        residual=scalars[residual:cost],
-        cost=scalars[cost:lacks],
-        lacks=scalars[lacks:],
-        corners=out[corners:rectangle].reshape(SIDES + 1, SIDES, 2),
-        rectangle=out[rectangle + 1 : turning].reshape(4, 2).copy(),
-        extra=float(out[rectangle]),
-        turning=out[turning:rest],
+        out[0:2],
+        out[6:10].reshape(2, 2),
+        scalars[length],
+        scalars[length + 1],
+        out[conic : conic + 5],
+        scalars[conic + 5],
+        (scalars[conic + 6], scalars[conic + 7], scalars[conic + 8]),
+        scalars[conic + 9],
+        scalars[residual:cost],
+        scalars[cost:lacks],
+        scalars[lacks:],
+        out[corners:rectangle].reshape(SIDES + 1, SIDES, 2),
+        out[rectangle + 1 : turning].reshape(4, 2).copy(),
+        float(out[rectangle]),
+        out[turning:rest],
     )
 
 

@@ -220,6 +220,19 @@ static double find_lifts(const double *z, const int32_t *part_end, int parts, do
     return gaps;
 }
 
+/* The readings of a closed chain of ink, in its frame where not said otherwise. */
+typedef struct {
+    double frame[10]; /* mean (2), to (4), back (4) */
+    double length[2]; /* of the ink and of the gaps */
+    double round[10]; /* as of fit_rounds */
+    double residual[SIDES + 1]; /* mean squared distance of the best k-gon */
+    double cost[SIDES + 1]; /* nats to say the ink, given it, with its bowed sides, flat corners and short sides */
+    double lacks[SIDES + 1]; /* nats for what of it nobody drew */
+    double vertices[SIDES + 1][2 * SIDES]; /* [pixels] */
+    double rectangle[9]; /* what the nearest adds to residual[4], infinite for none, and its corners [pixels] */
+    double turned[SIDES + 1]; /* how much of the ink's turning is at the corners of the k-gon, of up to MOST sides */
+} Closed;
+
 /* Fit the readings of a closed chain of ink.
  *
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
@@ -229,20 +242,13 @@ static double find_lifts(const double *z, const int32_t *part_end, int parts, do
  * hopeless: a first split that costs more [nats] is not looked into further.
  * undrawn: nats for each observation that an outline lacks.
  * cap: distances count up to this, in the frame.
- * Out: frame: mean (2), to (4), back (4); length: of the ink and of the gaps, in the frame; round: as of fit_rounds;
- * residual[k]: mean squared distance of the best k-gon; cost[k]: nats to say the ink, given it, with its bowed sides, flat
- * corners and short sides, and lacks[k]: nats for what of it nobody drew; vertices[k][SIDES][2] [pixels]; rectangle: what the nearest adds to residual[4], infinite for none,
- * and its corners (8) [pixels]; turned[k]: how much of the ink's turning is at the corners of the k-gon, of up to MOST
- * sides. */
+ * scratch: for the ink in its frame and a Lift for each part. */
 INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
-                        double observations, double side, double hopeless, double undrawn, double *frame,
-                        double *length, double *round, double *residual, double *cost, double *lacks, double *vertices,
-                        double *rectangle, double *turned, double *scratch) {
+                        double observations, double side, double hopeless, double undrawn, Closed *out,
+                        double *scratch) {
     int n = part_end[parts - 1];
     Frame f = normal_frame(xy, n, least_axis);
-    memcpy(frame, f.mean, sizeof f.mean);
-    memcpy(frame + 2, f.to, sizeof f.to);
-    memcpy(frame + 6, f.back, sizeof f.back);
+    memcpy(out->frame, &f, sizeof f);
     double *z = scratch; /* (n, 2): the chain in the frame */
     for (int i = 0; i < n; i++) {
         double dx = xy[2 * i] - f.mean[0], dy = xy[2 * i + 1] - f.mean[1];
@@ -251,6 +257,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     }
     Runs r, longer;
     r.n = SAMPLES;
+    double *length = out->length;
     length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
     Lift *lifts = (Lift *)(scratch + 2 * n);
     length[1] = find_lifts(z, part_end, parts, length[0], lifts);
@@ -266,27 +273,30 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
                .lift_count = parts,
                .gaps = length[1],
                .undrawn = undrawn * observations / fmax(length[0], 1e-9)};
-    fit_rounds(&r, &f, &ink, round);
-    ink.round = fmin(round[5], round[9]);
+    fit_rounds(&r, &f, &ink, out->round);
+    ink.round = fmin(out->round[5], out->round[9]);
 
     Polygon found[SIDES + 1];
     double p = hypot(f.back[0], f.back[2]), q = hypot(f.back[1], f.back[3]);
     best_polygons(&ink, &r, &longer, p > LONG * q ? sqrt(sqrt(p / q)) : 1, found);
     for (int k = 0; k <= SIDES; k++) {
-        double *v = vertices + 2 * SIDES * k;
-        cost[k] = found[k].cost - found[k].undrawn;
-        lacks[k] = found[k].undrawn;
-        residual[k] = isfinite(cost[k]) ? found[k].square : INFINITY;
-        turned[k] = 0;
-        if (!isfinite(cost[k])) continue;
+        double *v = out->vertices[k], cost = found[k].cost - found[k].undrawn;
+        out->cost[k] = cost;
+        out->lacks[k] = found[k].undrawn;
+        out->residual[k] = isfinite(cost) ? found[k].square : INFINITY;
+        out->turned[k] = 0;
+        if (!isfinite(cost)) continue;
         polygon_corners(found + k, v);
-        if (k <= MOST) cost[k] += blunted(&r, &ink, v, k, found[k].square, length[0] / n);
-        if (k <= MOST) turned[k] = turning(&r, v, k);
+        if (k <= MOST) {
+            out->cost[k] += blunted(&r, &ink, v, k, found[k].square, length[0] / n);
+            out->turned[k] = turning(&r, v, k);
+        }
         for (double *c = v; c < v + 2 * k; c += 2) {
             double x = c[0], y = c[1];
             c[0] = f.mean[0] + f.back[0] * x + f.back[1] * y;
             c[1] = f.mean[1] + f.back[2] * x + f.back[3] * y;
         }
     }
-    rectangle[0] = isfinite(cost[4]) ? nearest_rectangle(vertices + 2 * SIDES * 4, f.to, rectangle + 1) : INFINITY;
+    double *box = out->rectangle;
+    box[0] = isfinite(out->cost[4]) ? nearest_rectangle(out->vertices[4], f.to, box + 1) : INFINITY;
 }

@@ -93,13 +93,13 @@ class Proposed:
         first = np.fromiter(accumulate(map(len, outlines[:-1]), initial=0), dtype=np.intp)
         points = np.concatenate(outlines)
         low, high = np.minimum.reduceat(points, first), np.maximum.reduceat(points, first)
-        rows: list[Row] = np.column_stack([low, high, np.hypot(*(high - low).T)]).tolist()
-        return rows
+        wide = np.hypot(*(high - low).T)
+        return [[*a, *b, w] for a, b, w in zip(low.tolist(), high.tolist(), wide.tolist(), strict=True)]
 
     @cached_property
     def box(self) -> Box:
         """The box around all these outlines."""
-        return _around([(row[0], row[1], row[2], row[3]) for row in self.rows])
+        return _around(self.rows)
 
     @cached_property
     def seen(self) -> Box:
@@ -347,9 +347,9 @@ def _again(page: Page, found: list[Fitted], free: dict[int, float]) -> list[Fitt
     return [together for f in found for together in f.together(costs)]
 
 
-def _around(boxes: list[Box]) -> Box:
-    """The box around boxes; of none one that touches nothing."""
+def _around(boxes: Sequence[Sequence[float]]) -> Box:
+    """The box around boxes, the first four numbers of each; of none one that touches nothing."""
     if not boxes:
         return math.inf, math.inf, -math.inf, -math.inf
-    x0, y0, x1, y1 = zip(*boxes, strict=True)
+    x0, y0, x1, y1, *_ = zip(*boxes, strict=True)
     return min(x0), min(y0), max(x1), max(y1)
