@@ -10,7 +10,19 @@ import pytest
 from numpy.typing import NDArray
 from pages import measured, page
 
-from sketch.kernel import beside, course, course_around, depth, fit_closed, gap, lent, measure, off_outline
+from sketch.kernel import (
+    beside,
+    course,
+    course_around,
+    depth,
+    depths,
+    fit_closed,
+    gap,
+    lent,
+    measure,
+    off_outline,
+    within,
+)
 from sketch.page.loose import LooseEnds
 from sketch.page.pieces import Page
 
@@ -272,3 +284,25 @@ def test_the_gap_between_open_lines_is_as_of_their_points() -> None:
     # along one line, and of a single place
     assert gap(np.array([[0.0, 0], [10, 0]]), np.array([[14.0, 0], [20, 0]])) == (4, (10, 0))
     assert gap(np.array([[3.0, 4], [3, 4]]), np.array([[0.0, 0], [10, 0]]))[0] == 4
+
+
+def test_what_is_within_a_triangle_whichever_way_it_goes() -> None:
+    strokes = scattered(11, 60)
+    ink = measured(page(strokes))
+    triangle = np.array([[40.0, 30.0], [290.0, 80.0], [90.0, 280.0]])
+    steps = np.roll(triangle, -1, axis=0) - triangle
+    normals = np.stack([-steps[:, 1], steps[:, 0]], axis=1) / np.hypot(*steps.T)[:, None]
+    beyond = {
+        i: float(-((ink.strokes.samples[i, :, None] - triangle) * normals).sum(axis=2).min())
+        for i in ink.pieces
+    }
+    for reach in (0.0, 25.0):
+        inside = {i for i in ink.pieces if within(ink.strokes, i, triangle, reach)}
+        assert inside == {i for i, far in beyond.items() if far <= reach}
+        assert inside == {i for i in ink.pieces if within(ink.strokes, i, triangle[::-1].copy(), reach)}
+        assert 2 < len(inside) < 40
+
+
+def test_depths_are_those_of_each_place() -> None:
+    outline, places = scattered(12, 2)
+    assert depths(places, outline) == [depth(x, y, outline) for x, y in places.tolist()]
