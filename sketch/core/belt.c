@@ -16,6 +16,9 @@ static const double BLOT = 0.6;  /* one that is filled must stand out by so much
 static const double ROUND = 0.4; /* one that other ink is all around must be as round, and clear by its hole alone */
 static const double BEYOND = 1.1, WITHIN = 0.8; /* pen widths from the belt's middle to the paper beside it */
 static const double OUT_OF_ROUND = 0.09; /* deviation from a circle, a share of its radius: a square has 0.11 */
+/* Of roundness, what rims that are not to be seen speak against a ring: lines often run into its belt from outside, seldom
+ * over its hole. By logistic regression on rings of 540 pictures. */
+static const double HIDDEN_OUTSIDE = 0.2, HIDDEN_WITHIN = 0.4;
 static const double LEAST_ROUND = -0.1;
 
 typedef struct {
@@ -136,6 +139,7 @@ INK_API int32_t ink_belt(const uint8_t *mask, int32_t width, int32_t height, con
     if (!open && (within < CLEAR || roundness < ROUND)) return 0;
     /* of one that is filled only half is to be seen: its outer rim */
     out[0] = within + beyond < CLEAR ? roundness / 2 : roundness;
+    out[0] -= HIDDEN_OUTSIDE * (1 - beyond) + HIDDEN_WITHIN * (1 - within);
     out[1] = middle[0];
     out[2] = middle[1];
     out[3] = radius;

@@ -257,6 +257,16 @@ def test_the_belt_of_a_ring_is_met_where_the_pen_went(radius: float) -> None:
     assert np.abs(np.hypot(*(points - [41, 38]).T) - radius).max() < 1.2
 
 
+def test_a_rim_that_is_not_to_be_seen_speaks_for_no_ring() -> None:
+    seen = np.zeros((80, 80), np.uint8)
+    cv2.circle(seen, (40, 40), 12, 1, PEN)
+    around = np.ones((80, 80), np.uint8)
+    cv2.circle(around, (40, 40), 12, 0, -1)
+    cv2.circle(around, (40, 40), 12, 1, PEN)
+    roundness = [found[0] for mask in (seen, around) if (found := belt(mask, (40.0, 40.0, 12.0), PEN))]
+    assert roundness[0] > roundness[1] + 0.15
+
+
 def test_there_is_no_belt_on_bare_paper_or_in_a_blot_or_around_a_triangle() -> None:
     mask = np.zeros((80, 80), np.uint8)
     assert belt(mask, (40.0, 40.0, 9.0), PEN) is None
