@@ -7,6 +7,7 @@ junction with the branches at both its ends.
 
 from __future__ import annotations
 
+import math
 from cmath import phase
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,6 +26,7 @@ Pairs = list[tuple[int, int]]  # indices of a junction's branches
 
 CROSSING = 1.6  # pen widths: nodes nearer than this are one crossing, which thinning pulled apart
 MERGED = 12.0  # pen widths: the longest bridge that is tried as the ink of two lines
+DETOUR = 1.5  # times as long as the way straight across: half a circle, the way around a hole, and no bridge
 BRIDGE_COST = 0.06  # for each pen width of a bridge that two lines share
 UNEVEN = 0.5  # weight of the difference in bend between two branches
 ROUND_BEND = 1.0  # [rad] beyond which bends are not compared
@@ -145,7 +147,12 @@ def _share_bridges(
     """Merge the junctions at both ends of a bridge where the branches then continue each other better."""
     junctions = {k: ({k}, found, list[int]()) for k, found in branches.items()}
     home = {k: k for k in branches}  # of each crossing, its junction
-    lengths = [(edge.length, e) for e, edge in enumerate(graph.edges) if _is_bridge(edge.ends)]
+    lengths = [
+        (length, e)
+        for e, edge in enumerate(graph.edges)
+        if _is_bridge(edge.ends)
+        and (length := edge.length) < DETOUR * math.dist(*graph.nodes[list(edge.ends)].tolist())
+    ]
     for length, e in sorted(lengths):
         if not CROSSING * pen <= length < MERGED * pen:
             continue
