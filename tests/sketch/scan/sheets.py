@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -92,3 +95,9 @@ def assert_all(sketch: Sketch, within: float = 1.5) -> None:
     for bar in CROSS:
         ends = [min(np.hypot(*(s[[0, -1]] - end).T).min() for s in bars) for end in bar]
         assert max(ends) < 3 * within
+
+
+def even(*corners: tuple[float, float]) -> NDArray[np.float64]:
+    """Points about a pixel apart along a line, shape (n, 2)."""
+    sides = [np.linspace(a, b, round(math.dist(a, b)) + 1) for a, b in pairwise(corners)]
+    return np.concatenate([side[min(k, 1) :] for k, side in enumerate(sides)])
