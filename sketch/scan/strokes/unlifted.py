@@ -9,10 +9,12 @@ Chinese postman", Mathematical Programming 5, 1973), the smoothest such counting
 from __future__ import annotations
 
 import heapq
-from itertools import count
+import math
+from collections.abc import Iterator, Sequence
+from itertools import count, islice
 
 from sketch.scan.skeleton.graph import RING, End
-from sketch.scan.skeleton.junctions import LONELY, turn_cost
+from sketch.scan.skeleton.junctions import LONELY, Branch, turn_cost
 from sketch.scan.strokes.courses import Course, Links
 from sketch.scan.strokes.layout import Layout
 
@@ -21,23 +23,21 @@ __all__ = ["unlifted"]
 FEWEST, MOST = 3, 7  # lines of a piece of ink
 AGAIN = 0.06  # [rad²] for each pen width that is drawn twice
 BACK = 2.0  # [rad²]: a sharper turn is as good as turning back
+BEST = 2  # movements along the same lines that are given: a loop may be drawn either way,
+WORSE = 1.0  # [rad²] if that is hardly worse
 STEPS = 1500  # that are looked at for each piece
 
 State = tuple[End, tuple[int, ...]]  # by which end the last edge was left, and how often each was drawn
 
 
-def unlifted(layout: Layout, inner: set[int]) -> list[tuple[Course, Links, float]]:
-    """The least movement along each small piece of ink: its course, its links and its strain [rad²].
+def unlifted(layout: Layout, inner: set[int], outlines: set[int]) -> list[tuple[Course, Links, float]]:
+    """The least movements along each small piece of ink, each as its course, its links and its strain [rad²].
 
-    inner: edges that belong to junctions.
+    inner: edges that belong to junctions.  outlines: those of outlines, which a piece may only touch.
     """
-    out = []
-    for edges in _pieces(layout, inner):
-        if FEWEST <= len(edges) <= MOST:
-            found = _least(layout, edges)
-            if found is not None:
-                out.append(found)
-    return out
+    pieces = {tuple(piece): None for gone in (inner, inner | outlines) for piece in _pieces(layout, gone)}
+    small = [piece for piece in pieces if FEWEST <= len(piece) <= MOST]
+    return [found for edges in small for found in islice(_movements(layout, edges), BEST)]
 
 
 def _pieces(layout: Layout, inner: set[int]) -> list[list[int]]:
@@ -58,31 +58,44 @@ def _pieces(layout: Layout, inner: set[int]) -> list[list[int]]:
     return out
 
 
-def _least(layout: Layout, edges: list[int]) -> tuple[Course, Links, float] | None:
-    """The least movement along all of these edges from a free end of one; None where there is none."""
+def _movements(layout: Layout, edges: Sequence[int]) -> Iterator[tuple[Course, Links, float]]:
+    """The movements along all of these edges from a free end of one, the least first."""
     number = {e: k for k, e in enumerate(edges)}
     order = count()
+
+    def onward(end: End) -> list[Branch]:
+        """The piece's other branches where an end of an edge is."""
+        junction = layout.junction_of.get(end)
+        every = [] if junction is None else junction.branches
+        return [b for b in every if b.end != end and b.end[0] in number]
+
     queue: list[tuple[float, int, State, tuple[End, ...], float]] = []
     for e in edges:
         for side in (0, 1):
-            if layout.graph.node((e, side)) == -1:
+            if not onward((e, side)):
                 drawn = tuple(int(f == e) for f in edges)
-                heapq.heappush(queue, (0.0, next(order), ((e, 1 - side), drawn), ((e, side),), 0.0))
-    seen: set[State] = set()
+                lonely = LONELY * ((e, side) in layout.junction_of)  # it ends at other ink
+                heapq.heappush(queue, (lonely, next(order), ((e, 1 - side), drawn), ((e, side),), lonely))
+    seen, done = set[State](), set[tuple[End, ...]]()
+    most = math.inf
     while queue and len(seen) < STEPS:
         cost, _, state, way, strain = heapq.heappop(queue)
+        if cost > most:
+            break
+        at, drawn = state
+        if all(drawn):
+            back = tuple((e, 1 - side) for e, side in way[::-1])
+            if way not in done and back not in done:
+                done.add(way)
+                most = min(most, cost + WORSE)
+                lonely = LONELY * (at in layout.junction_of and not onward(at))
+                yield *layout.along(way, closed=False), strain + lonely
+            continue
         if state in seen:
             continue
         seen.add(state)
-        at, drawn = state
-        if all(drawn):
-            return *layout.along(way, closed=False), strain
-        if at in layout.junction_of:
-            here, branches = layout.branch_of[at], layout.junction_of[at].branches
-            onward = [(b.end, min(turn_cost(here, b), BACK)) for b in branches if b.end != at]
-        else:
-            onward = [(at, LONELY)]
-        for end, turn in onward:
+        turns = [(b.end, min(turn_cost(layout.branch_of[at], b), BACK)) for b in onward(at)]
+        for end, turn in turns or [(at, LONELY)]:
             k = number[end[0]]
             if drawn[k] == 2:
                 continue
@@ -92,4 +105,3 @@ def _least(layout: Layout, edges: list[int]) -> tuple[Course, Links, float] | No
             if after not in seen:
                 bent = strain + min(turn, LONELY)
                 heapq.heappush(queue, (cost + turn + again, next(order), after, (*way, end), bent))
-    return None

@@ -103,7 +103,8 @@ class Ways:
             if signature not in seen and not self._layout.is_crumb(course):
                 seen.add(signature)
                 out += [self._way(course, self._smoothest), *self._closed(course, self._smoothest)]
-        for course, links, strain in unlifted(self._layout, self._inner):
+        outlines = {e for course in known if course.closed for e, _ in course.steps}
+        for course, links, strain in unlifted(self._layout, self._inner, outlines):
             out.append(replace(self._way(course, links), strain=strain))
         for choices in _combined(self._choices):
             links = dict(self._links)

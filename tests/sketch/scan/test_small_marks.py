@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
+
 import cv2
 import numpy as np
 import pytest
+from sheets import even
 from test_tangles import BOX, circle, inked, kinds, read
 
 from sketch.scan.binding import distances, thin, trace
 from sketch.scan.paper.faint import drop_faint_marks
 from sketch.scan.skeleton.corners import sharpen_corners
-from sketch.scan.skeleton.graph import Graph, build_graph
+from sketch.scan.skeleton.graph import Edge, Graph, build_graph
+from sketch.scan.skeleton.junctions import find_junctions
 from sketch.scan.strokes.hidden import going_on
 from sketch.scan.strokes.rings import find_rings
-from sketch.scan.strokes.ways import Way
+from sketch.scan.strokes.ways import Way, Ways
 
 Line = list[tuple[float, float]]
 
@@ -153,3 +158,43 @@ def test_crumbs_alone_are_as_dark_as_they_are() -> None:
     before = mask.copy()
     assert drop_faint_marks(mask, 200 * mask, trace(*thin(mask)), distance, 8.0) == 0
     assert np.array_equal(mask, before)
+
+
+@pytest.mark.parametrize(
+    ("pen", "half", "bow", "tip"),
+    [(4.0, 8, -0.2, 2), (4.5, 8, -0.1, 6), (5.5, 10, -0.2, 4), (5.5, 11, -0.2, 2)],
+)
+def test_the_way_around_a_hole_is_no_ink_of_lines_that_run_into_each_other(
+    pen: float, half: float, bow: float, tip: float
+) -> None:
+    x = x_with_a_side(250, 250, half, bow * half)
+    x[1] = (250 + half, 250 - half - tip)
+    graph = traced([x], pen, sharpened=False)
+    for junction in find_junctions(graph, pen):
+        for edge in map(graph.edges.__getitem__, junction.bridges):
+            across = math.dist(*graph.nodes[list(edge.ends)].tolist())
+            assert edge.length < max(1.5 * across, 1.6 * pen)
+
+
+def length(way: Way) -> float:
+    return float(np.hypot(*np.diff(way.points, axis=0).T).sum())
+
+
+@pytest.mark.parametrize(("pen", "half"), [(2.5, 28), (4.0, 14), (4.0, 20), (4.0, 28)])
+def test_a_mark_in_one_stroke_may_touch_an_outline(pen: float, half: float) -> None:
+    mark = x_with_a_side(250, 298 - half - pen, half, 0)
+    drawn = sum(math.dist(a, b) for a, b in pairwise(mark))
+    found = [
+        way for way in Ways(traced([BOX, mark], pen), pen).others() if np.ptp(way.points[:, 0]) < 2.6 * half
+    ]
+    assert max(map(length, found)) > 0.92 * drawn
+
+
+def test_a_loop_of_a_stroke_may_be_drawn_either_way() -> None:
+    cross, top = (100.0, 100.0), (108.0, 94.0)
+    lines = [even(top, (113, 82)), even(top, (110, 103), cross), even(top, cross)]
+    lines += [even(cross, (90, 88)), even(cross, (89, 110))]
+    ends = [(1, -1), (1, 0), (1, 0), (0, -1), (0, -1)]
+    edges = [Edge(points, its, {k: points}) for k, (points, its) in enumerate(zip(lines, ends, strict=True))]
+    ways = Ways(Graph(np.array([cross, top]), np.array([3.0, 3.0]), edges), 4.5).others()
+    assert len([way for way in ways if len(way.ink) == len(lines)]) == 2
