@@ -21,6 +21,7 @@ __all__ = [
     "belt",
     "bend",
     "coarseness",
+    "columns",
     "course_length",
     "crests",
     "crisp_ink",
@@ -34,6 +35,7 @@ __all__ = [
     "pieces",
     "smoothed",
     "thin",
+    "through",
     "trace",
     "turns",
 ]
@@ -77,6 +79,10 @@ def _library() -> ctypes.CDLL:
     core.ink_coarseness.restype = double
     core.ink_belt.argtypes = [_MASK, int32, int32, _DOUBLES, ctypes.c_double, _DOUBLES]
     core.ink_belt.restype = int32
+    core.ink_columns.argtypes = [_MASK, int32, _INTS, _INTS, int32, int32, _INTS, _INTS]
+    core.ink_columns.restype = None
+    core.ink_through.argtypes = [_MASK, int32, int32, int32, _MASK]
+    core.ink_through.restype = None
     core.ink_distance.argtypes = [_MASK, int32, int32, _FLOATS]
     core.ink_distance.restype = None
     core.ink_thin.argtypes = [_MASK, int32, int32]
@@ -194,6 +200,24 @@ def along_lines(
     height, width = dark.shape
     _library().ink_along_lines(dark, width, height, near, *tensor, reach, smooth)
     return smooth
+
+
+def columns(
+    mask: NDArray[np.uint8], x: NDArray[np.int32], middle: NDArray[np.int32], reach: int
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Of columns x of a mask the ink within `reach` rows of `middle`, each shape (n,): how many pixels, and the sum of
+    how far these are below it [pixels].  All of these rows are on the mask."""
+    pixels, below = np.empty_like(x), np.empty_like(x)
+    _library().ink_columns(mask, mask.shape[1], x, middle, len(x), reach, pixels, below)
+    return pixels, below
+
+
+def through(belt: NDArray[np.uint8], flat: int) -> NDArray[np.uint8]:
+    """1 for the ink of a belt, shape (k, n) of two rows and more, on straight ways all of ink from its first row to its
+    last that move no more than `flat` columns a row."""
+    out = np.zeros_like(belt)
+    _library().ink_through(belt, *belt.shape, flat, out)
+    return out
 
 
 def crests(

@@ -122,14 +122,15 @@ def _look(picture: Image, scale: float) -> Seen | None:
         return None
     page = read_page(work)
     seen = _inked(page, scale)
-    if seen.pen and is_broken(seen.skeleton, seen.pen):
-        return _inked(page.smoothed(2 * NEARBY), scale)
+    printed = seen.page is not page
+    if seen.pen and is_broken(seen.skeleton, seen.pen, printed=printed):
+        return _inked(seen.page.smoothed(NEARBY if printed else 2 * NEARBY), scale)
     return seen
 
 
 def _inked(page: Page, scale: float) -> Seen:
     """The stages behind the page."""
-    mask, left_out = ink_mask(page, NEARBY)
+    mask, page, left_out = ink_mask(page, NEARBY)
     skeleton, size = thin(mask)
     distance = distances(mask)
     if size and page.edge is not None and (things := drop_things(mask, skeleton, distance, page.edge)):

@@ -15,15 +15,20 @@ from sketch.typing import Image
 __all__ = ["is_broken", "smooth_lines"]
 
 WHOLE = 14.0  # pen widths of line to an end: a drawing has more
+BESIDE_PRINT = 28.0  # likewise, where a bit of a printed line is likelier than an end
 STROKE = 1.5  # [pixels]: standard deviation of the smoothing before directions are looked at
 PAPER = 3.0  # times the noise: what is darker may be ink
 
 
-def is_broken(skeleton: Image, pen: float) -> bool:
-    """Whether lines end much more often than those of a drawing.  pen: its width [pixels]."""
+def is_broken(skeleton: Image, pen: float, *, printed: bool) -> bool:
+    """Whether lines end much more often than those of a drawing.
+
+    pen: its width [pixels].  printed: whether printed lines were erased, which left bits or took some along.
+    """
     import cv2
 
-    return bool(cv2.countNonZero(skeleton) < WHOLE * pen * ends(skeleton))
+    whole = BESIDE_PRINT if printed else WHOLE
+    return bool(cv2.countNonZero(skeleton) < whole * pen * ends(skeleton))
 
 
 def smooth_lines(darkness: Image, noise: float, reach: int) -> Image:

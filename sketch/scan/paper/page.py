@@ -66,6 +66,7 @@ class Page:
         edge: not 0 off the sheet and near its edge, shape (h, w), or None where the sheet fills the picture.
         rim: width of the strips along the picture's edges where the table may be seen [pixels].
         beside: how dark the darkest line is that may as well be what is beyond the sheet; 0 without any.
+        left_out: notes of what was erased from it.
     """
 
     darkness: Image
@@ -73,6 +74,7 @@ class Page:
     edge: Image | None = None
     rim: int = 0
     beside: float = 0.0
+    left_out: tuple[str, ...] = ()
 
     def smoothed(self, reach: int) -> Page:
         """The page, smoothed along its lines by `reach` pixels to either side."""
@@ -227,8 +229,8 @@ def _noise(darkness: Image, paper: Image | None, step: int) -> float:
     return max(float(np.searchsorted(share, USUAL * share[-1])) / 2, NOISELESS)
 
 
-def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
-    """The pixels that are ink, 1, shape (h, w), and notes of what is as dark and was not drawn.
+def ink_mask(page: Page, reach: int) -> tuple[Image, Page, list[str]]:
+    """The pixels that are ink, 1, shape (h, w), the page without print, and notes of what is as dark and was not drawn.
 
     A pixel of ink is at least half as dark as the darkest within `reach` pixels, which finds a line's edges
     however dark it is, or nearly as dark as full ink.  Of the pieces that those make, the ones count that are about
@@ -251,7 +253,7 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     if not notable.any():
         notable = found.span >= 0
     if not len(notable):
-        return np.zeros_like(mask), []
+        return np.zeros_like(mask), page, []
     full = found.strength[notable].max()
     mask |= (crisp > np.uint8(max(floor, CRISP * full))).view(np.uint8)
     # beside darker ink a thin line is less than half as dark as the darkest around, as the blurred edge of that ink
@@ -260,24 +262,30 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     found = _measure(mask, page)
     photographed, ruled, margins = page.noise > NOISELESS, False, 0
     if _may_be_ruled(found, page):
-        ruled, margins = drop_ruling(mask, dark, page.edge, photographed)
+        before, bare = mask.copy(), page.darkness.copy()
+        ruled, margins = drop_ruling(mask, bare, page.edge, photographed)
     if ruled or margins:
         found = _measure(mask, page)
+        if ruled and page.edge is not None:  # as dark as ink, and all around the drawing
+            mask = found.without(mask, found.wholly(page.edge))
+            found = _measure(mask, page)
+        page = _without_print(page, bare, before & (1 - mask), ruled, margins)
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     frame = None if ruled or not photographed else _drop_frame(mask, found, reach)
+    sheet = page
     if frame is not None:
-        page = replace(page, edge=frame if page.edge is None else np.asarray(cv2.max(frame, page.edge)))
-        found = _measure(mask, page)
+        sheet = replace(page, edge=frame if page.edge is None else np.asarray(cv2.max(frame, page.edge)))
+        found = _measure(mask, sheet)
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     left_out = ["left out a frame all around, and what is beyond it"] if frame is not None else []
-    left_out += ["left out what is printed from edge to edge of the sheet, or a crease"] if margins else []
+    left_out += page.left_out
     faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
     is_solid = (found.area > SOLID * found.extent.prod(axis=1)) & (found.span > HOLE * size)
     solid = np.flatnonzero(is_solid & (found.strength >= faintest))
     if photographed and len(solid):
         ends = np.cumsum(found.area)
         discs = [found.pixels[ends[k] - found.area[k] : ends[k]] for k in solid]
-        holes = solid[punched(mask, page.edge, page.rim, discs)]
+        holes = solid[punched(mask, sheet.edge, page.rim, discs)]
         found.strength[holes] = 0
         left_out += [f"left out {len(holes)} holes along an edge of the sheet"] if len(holes) else []
     held = found.at_edge & (found.span < (FINGER_MARK if frame is None else HUNG) * size)
@@ -288,7 +296,22 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, list[str]]:
     if frame is None:
         leads = (keep & found.at_edge).any() or page.beside > SMUDGE * full
         left_out += _at_edge(int(np.count_nonzero(seen & held)), bool(leads))
-    return found.without(mask, ~keep), left_out
+    return found.without(mask, ~keep), page, left_out
+
+
+def _without_print(page: Page, bare: Image, gone: Image, ruled: bool, margins: int) -> Page:
+    """The page without what was printed on it.
+
+    bare: its darkness without lines from edge to edge.  gone: 1 where there was ink of print.  ruled: whether some of
+    it was ruling, which is along the edges, too.  margins: how many lines were none.
+    """
+    left_out = ["left out what is printed from edge to edge of the sheet, or a crease"] if margins else []
+    return replace(
+        page,
+        darkness=bare * (1 - gone),
+        beside=0.0 if ruled else page.beside,
+        left_out=(*page.left_out, *left_out),
+    )
 
 
 def _at_edge(held: int, leads: bool) -> list[str]:

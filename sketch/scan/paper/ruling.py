@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.scan.binding import pieces
+from sketch.scan.binding import columns, pieces, through
 from sketch.scan.quantiles import median
 from sketch.typing import Image
 
@@ -23,6 +23,7 @@ LONG = 0.3  # of the picture's width: what a stretch of a printed line has at le
 SHORT = 0.03  # of the picture's width: shorter stretches are crossings of other lines
 FEWEST = 5  # printed lines of which such a stretch is seen
 EVEN = 0.12  # of their distance: how far they are from even spacing
+BEYOND = 16  # [pixels] around the picture: a printed line is looked at with what is beside it
 NEAREST = 3  # [pixels] beyond the thickness of a printed line, to either side: its ink is looked for so far at least
 SEEN = 0.35  # of a line's length that has to be ink, where it is only thought to be
 HARDLY = 0.2  # of a line's length that has to be ink, where it has its place among others that are seen
@@ -34,35 +35,45 @@ DARKER = 1.5  # times as dark as the printed line: ink on it
 STEEPEST = 0.21  # of a family of printed lines on a turned sheet, up or down a pixel
 STEPS = 0.01  # [up or down a pixel] between the slopes that are tried
 COARSE = 4  # [pixels] a side of the squares that those are tried on
+FLAT = 3  # columns a row: what is drawn across a printed line at a flatter slant is left as it is
 SHARPER = 1.5  # times as much ink runs at a slope than level: the sheet is turned
 
 
 def drop_ruling(mask: Image, darkness: Image, edge: Image | None, photographed: bool) -> tuple[bool, int]:
-    """Erase ruling, squares and margins from a mask of ink, in place.
+    """Erase ruling, squares and margins from a mask of ink, and from its darkness what is there and no ink, in place.
 
     Ink that crosses a printed line stays, and so does ink on it that is clearly darker.  edge: not 0 off the sheet and
     near its edge, or None where the sheet fills the picture.  photographed: whether a camera or scanner saw it, so that
     no straight line is a tool's.  Returns whether there was ruling, and how many other lines from edge to edge.
     """
-    ruled, margins = _drop_turned(mask, darkness, edge, photographed)
-    upright, dark = np.ascontiguousarray(mask.T), np.ascontiguousarray(darkness.T)
-    upright_ruled, more = _drop_turned(upright, dark, None if edge is None else edge.T, photographed)
-    if upright_ruled or more:
-        mask[...] = upright.T
+    import cv2
+
+    # a printed line along the picture's edge is looked at to either side, as others are
+    rim = (BEYOND,) * 4
+    whole, dark = (
+        cv2.copyMakeBorder(some, *rim, cv2.BORDER_CONSTANT, value=(0,)) for some in (mask, darkness)
+    )
+    off = cv2.copyMakeBorder(
+        np.zeros_like(mask) if edge is None else edge, *rim, cv2.BORDER_CONSTANT, value=(255,)
+    )
+    ruled, margins = _drop_turned(whole, dark, off, photographed)
+    whole, dark = (np.ascontiguousarray(some.T) for some in (whole, dark))
+    upright_ruled, more = _drop_turned(whole, dark, off.T, photographed)
+    for some, to in ((whole, mask), (dark, darkness)):
+        to[...] = some.T[BEYOND:-BEYOND, BEYOND:-BEYOND]
     return ruled or upright_ruled, margins + more
 
 
-def _drop_turned(mask: Image, darkness: Image, edge: Image | None, photographed: bool) -> tuple[bool, int]:
+def _drop_turned(mask: Image, darkness: Image, edge: Image, photographed: bool) -> tuple[bool, int]:
     """Erase what is printed from left to right, at some slope: as in drop_ruling."""
     slope = _slope(mask)
     if not slope:
         return _drop_printed(mask, darkness, edge, photographed)
-    paper = np.zeros_like(mask) if edge is None else edge
-    level, dark, beyond = _levelled(mask, slope), _levelled(darkness, slope), _levelled(paper, slope, 255)
+    level, dark, beyond = _levelled(mask, slope), _levelled(darkness, slope), _levelled(edge, slope, 255)
     found = _drop_printed(level, dark, beyond, photographed, turned=True)
     if any(found):
         for there, here in _runs(mask.shape, slope):
-            mask[here] = level[there]
+            mask[here], darkness[here] = level[there], dark[there]
     return found
 
 
@@ -109,7 +120,7 @@ def _slope(mask: Image) -> float:
 
 
 def _drop_printed(
-    mask: Image, darkness: Image, edge: Image | None, photographed: bool, turned: bool = False
+    mask: Image, darkness: Image, edge: Image, photographed: bool, turned: bool = False
 ) -> tuple[bool, int]:
     """Erase what is printed from left to right: as in drop_ruling.  turned: whether it was levelled."""
     lines, thick = _long_lines(mask, turned)
@@ -117,12 +128,12 @@ def _drop_printed(
     for rough in lines if photographed else ():
         line = _refined(rough, mask, edge, thick, SEEN)
         if line is not None and _is_across(line, mask, edge, thick):
-            _erase([_belt(line, mask, darkness, thick)], mask)
+            _erase([_belt(line, mask, darkness, thick)], mask, darkness)
             margins += not ruled
     return ruled, margins
 
 
-def _drop_family(lines: list[Line], thick: float, mask: Image, darkness: Image, edge: Image | None) -> bool:
+def _drop_family(lines: list[Line], thick: float, mask: Image, darkness: Image, edge: Image) -> bool:
     """Erase the ruling that some long lines belong to."""
     family = _family(lines, mask.shape)
     found = [_refined(line, mask, edge, thick, SEEN) for line in family]
@@ -132,20 +143,28 @@ def _drop_family(lines: list[Line], thick: float, mask: Image, darkness: Image, 
         if found[k] is None:  # its place among the others is known
             found[k] = _refined(line, mask, edge, thick, HARDLY)
     belts = [_belt(line, mask, darkness, thick) for line in found if line is not None]
-    _erase(belts, mask)
+    _erase(belts, mask, darkness)
     return True
 
 
-def _erase(belts: list[_Belt], mask: Image) -> None:
-    """Erase lines that are printed alike."""
+def _erase(belts: list[_Belt], mask: Image, darkness: Image) -> None:
+    """Erase lines that are printed alike: their ink, and of the darkness all but what stays ink."""
     levels = [median(belt.dark[belt.alone]) for belt in belts if belt.alone.any()]
     # all are printed alike: a line that is drawn along one of them, however far, is darker than the others
     for belt in belts:
         printed = ~belt.crossed & (belt.dark <= DARKER * median(levels)) if levels else ~belt.crossed
-        mask[belt.rows[:, printed], np.broadcast_to(belt.x, belt.rows.shape)[:, printed]] = 0
+        # where drawn lines lead across, the rest is the printed one; where one ends, or goes along it, nobody can tell
+        drawn = through(belt.ink, FLAT)
+        gone = belt.ink > drawn
+        doubtful = gone[0] | gone[-1] | ~(belt.crossed | printed | drawn.any(axis=0))
+        near = np.ones(2 * len(gone) + 1, np.int32)
+        gone &= printed | (np.convolve(doubtful, near, "same") == 0)
+        row, column = np.nonzero(gone)
+        mask[belt.rows[row, column], belt.x[column]] = 0
+        darkness[belt.rows, belt.x] *= belt.ink & ~gone
 
 
-def _is_across(line: Line, mask: Image, edge: Image | None, thick: float) -> bool:
+def _is_across(line: Line, mask: Image, edge: Image, thick: float) -> bool:
     """Whether a line runs straight from one edge of the sheet to the other, as no hand draws it."""
     height, width = mask.shape
     reach = round(thick) + 1
@@ -153,8 +172,7 @@ def _is_across(line: Line, mask: Image, edge: Image | None, thick: float) -> boo
     middle = np.round(np.polyval(line, x)).astype(int)
     inside = (middle >= reach) & (middle < height - reach)
     x, middle = x[inside], middle[inside]
-    if edge is not None:
-        x, middle = x[edge[middle, x] == 0], middle[edge[middle, x] == 0]
+    x, middle = x[edge[middle, x] == 0], middle[edge[middle, x] == 0]
     rows = middle + np.arange(-reach, reach + 1)[:, None]
     ink = mask[rows, x] > 0
     count = ink.sum(axis=0)
@@ -189,7 +207,7 @@ def _long_lines(mask: Image, turned: bool) -> tuple[list[Line], float]:
         own = slice(start[k], start[k] + area[k])
         thick = area[k] / wide[k]
         # a turned sheet ends before the picture does: continued beyond, a bent line goes astray
-        line = np.polyfit(x[own], y[own], 1 if turned and wide[k] < WHOLE * width else 2)
+        line = _fitted(x[own], y[own], 1 if turned and wide[k] < WHOLE * width else 2)
         if np.std(y[own] - np.polyval(line, x[own])) < 0.5 * thick + 0.5:
             lines.append(line)
             thickness.append(thick)
@@ -228,33 +246,39 @@ def _family(lines: list[Line], shape: tuple[int, ...]) -> list[Line]:
     return [np.polyfit(x, y, 2) for y in whole[inside]]
 
 
-def _refined(line: Line, mask: Image, edge: Image | None, thick: float, least: float) -> Line | None:
+def _refined(line: Line, mask: Image, edge: Image, thick: float, least: float) -> Line | None:
     """Where exactly a line of the family runs; None where there is not so much ink along it, a share of its
     length on the sheet."""
     height, width = mask.shape
-    x = np.arange(width)
+    x = np.arange(width, dtype=np.int32)
     for around in (10, 5, NEAREST):
         reach = round(thick) + around
-        middle = np.round(np.polyval(line, x)).astype(int)
+        middle = np.round(np.polyval(line, x)).astype(np.int32)
         inside = (middle >= reach) & (middle < height - reach)
-        if edge is not None:
-            inside[inside] = edge[middle[inside], x[inside]] == 0
+        inside[inside] = edge[middle[inside], x[inside]] == 0
         if not inside.any():
             return None
-        rows = middle[inside] + np.arange(-reach, reach + 1)[:, None]
-        ink = mask[rows, x[inside]] > 0
-        count = ink.sum(axis=0)
+        middle, seen = middle[inside], x[inside]
+        count, below = columns(mask, seen, middle, reach)
         alone = (count > 0) & (count <= thick + 1.5)
         if np.count_nonzero(alone) < least * len(count):
             if around > NEAREST:
                 continue  # what is drawn along it at a slant is no nearer than this for so long
             return None
-        y = (rows * ink).sum(axis=0)[alone] / count[alone]
-        seen = x[inside][alone]
+        y, seen = middle[alone] + below[alone] / count[alone], seen[alone]
         # a line that is seen in part is not bent: it would go astray beyond
         bends = 3 if np.ptp(seen) > WHOLE * width else 1
-        line = np.asarray(np.polyadd(line, np.polyfit(seen, y - np.polyval(line, seen), bends)))
+        line = np.asarray(np.polyadd(line, _fitted(seen, y - np.polyval(line, seen), bends)))
     return line
+
+
+def _fitted(x: NDArray[Any], y: NDArray[Any], degree: int) -> Line:
+    """The polynomial that comes nearest to some points, as polyfit gives it: by the normal equations, which are well
+    conditioned for so low a degree and much faster."""
+    size = max(float(x.max(initial=1)), 1.0)
+    powers = np.vander(x / size, degree + 1)
+    found, *_ = np.linalg.lstsq(powers.T @ powers, powers.T @ y)
+    return np.asarray(found / size ** np.arange(degree, -1, -1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,12 +287,14 @@ class _Belt:
 
     Attributes:
         x, rows: [pixels] of the columns, shape (n,), and the rows within the line's reach, shape (k, n).
+        ink: 1 where they are ink, shape (k, n).
         dark: the darkest ink of each column, 0 without any.
         crossed: where ink leads beyond the line's reach.
     """
 
     x: NDArray[np.intp]
     rows: NDArray[np.intp]
+    ink: Image
     dark: NDArray[Any]
     crossed: NDArray[np.bool_]
 
@@ -284,6 +310,6 @@ def _belt(line: Line, mask: Image, darkness: Image, thick: float) -> _Belt:
     middle = np.round(np.polyval(line, x)).astype(int)
     inside = (middle >= beyond) & (middle < height - beyond)
     x, rows = x[inside], middle[inside] + np.arange(-beyond, beyond + 1)[:, None]
-    ink = mask[rows, x] > 0
-    dark = np.where(ink, darkness[rows, x], 0).max(axis=0, initial=0)
-    return _Belt(x, rows, dark, ink[0] | ink[-1])
+    ink = mask[rows, x]
+    dark = (ink * darkness[rows, x]).max(axis=0, initial=0)
+    return _Belt(x, rows, ink, dark, (ink[0] | ink[-1]) > 0)

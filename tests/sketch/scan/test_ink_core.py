@@ -11,6 +11,7 @@ from sketch.scan.binding import (
     along_lines,
     bend,
     coarseness,
+    columns,
     course_length,
     crests,
     crisp_ink,
@@ -24,6 +25,7 @@ from sketch.scan.binding import (
     pieces,
     smoothed,
     thin,
+    through,
     turns,
 )
 from sketch.scan.paper.fills import fill_grain
@@ -59,6 +61,33 @@ def test_crests_are_found_all_over_a_row() -> None:
     found = crests(dark, np.zeros_like(dark), 30, 4, 1.2, 0.6)
     assert np.array_equal(np.flatnonzero(found[10]), columns)
     assert not crests(dark, np.zeros_like(dark), 90, 4, 1.2, 0.6).any()
+
+
+def test_columns_say_how_much_ink_is_near_and_how_far_below() -> None:
+    rng = np.random.default_rng(7)
+    mask = (rng.random((30, 40)) < 0.4).astype(np.uint8)
+    x = np.arange(3, 37, dtype=np.int32)
+    middle = rng.integers(4, 26, len(x)).astype(np.int32)
+    pixels, below = columns(mask, x, middle, 4)
+    for k in range(len(x)):
+        ink = mask[middle[k] - 4 : middle[k] + 5, x[k]]
+        assert pixels[k] == ink.sum()
+        assert below[k] == (ink * np.arange(-4, 5)).sum()
+
+
+@pytest.mark.parametrize("aside", [-3, -1, 0, 2])
+def test_what_leads_through_a_belt_is_told_from_what_lies_along_it(aside: int) -> None:
+    belt, drawn = np.zeros((7, 80), np.uint8), np.zeros((7, 80), bool)
+    for row in range(7):
+        drawn[row, 40 + aside * row : 45 + aside * row] = True
+    belt[2:5], belt[:3, 5:9] = 1, 1  # a printed line, and one that ends at it
+    belt[drawn] = 1
+    found = through(belt, 3) > 0
+    assert (found | ~drawn).all()
+    assert not (found & ~drawn)[:, : 40 + min(6 * aside, 0) - 1].any()
+    assert np.count_nonzero(found & ~drawn) <= 8  # ways that lean a little more, or less
+    assert not through(belt, 3)[:, :20].any()
+    assert not through(np.zeros((7, 0), np.uint8), 3).size
 
 
 def test_pieces_are_measured_as_they_lie() -> None:

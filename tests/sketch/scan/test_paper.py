@@ -44,7 +44,7 @@ def test_ink_is_all_that_is_seen(name: str) -> None:
     number, drawn = drawing(name)
     data, seen = photographed(drawn, PAPERS[name], np.random.default_rng([number, 1]))
     picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
-    mask, _ = ink_mask(read_page(picture), 4)
+    mask, *_ = ink_mask(read_page(picture), 4)
     true = np.zeros_like(mask)
     for stroke in seen.strokes:
         cv2.polylines(true, [np.round(stroke).astype(np.int32)], False, 1, 1)
@@ -62,6 +62,6 @@ def test_lines_of_a_drawing_are_no_ruling() -> None:
         cv2.line(picture, (40, y), (860, y), (40, 40, 40), 3, cv2.LINE_AA)
     for y in range(480, 680, 20):
         cv2.line(picture, (400, y), (480, y), (40, 40, 40), 3, cv2.LINE_AA)
-    mask, _ = ink_mask(read_page(picture), 4)
+    mask, *_ = ink_mask(read_page(picture), 4)
     assert np.count_nonzero(mask[[150, 250, 350, 450], 450]) == 4
     assert np.count_nonzero(mask[480:680:20, 440]) == 10

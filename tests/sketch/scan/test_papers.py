@@ -9,6 +9,8 @@ from sheets import HEIGHT, WIDTH, assert_all, assert_ring_and_box, drawn, encode
 
 from sim.scene import InputError
 from sketch.scan import read_picture, tracing
+from sketch.scan.binding import ends
+from sketch.scan.looking import look
 
 ACROSS, DOWN = np.meshgrid(np.linspace(0, 1, WIDTH), np.linspace(0, 1, HEIGHT))
 
@@ -408,6 +410,18 @@ def test_squares_on_a_turned_sheet_are_printed(degrees: float) -> None:
     for stroke in sketch.strokes:
         stroke.points[:] = stroke.points @ back[:, :2].T + back[:, 2]
     assert_all(sketch, 2.0)
+
+
+@pytest.mark.parametrize("step", [28, 32])
+@pytest.mark.parametrize("degrees", [2.0, 5.0])
+def test_what_crosses_squares_keeps_little_of_them(step: int, degrees: float) -> None:
+    """A bit of a printed line at each crossing would be a junction and an end: hundreds of them on a page."""
+    page = np.where(ruled(step, True) < 240, 150.0, 240.0)
+    picture = drawn(ink(pen=3.0), paper=page, pen=(40, 40, 40), noise=3)
+    way = cv2.getRotationMatrix2D((WIDTH / 2, HEIGHT / 2), degrees, 1.0)
+    seen = look(cv2.warpAffine(picture, way, (WIDTH, HEIGHT), borderMode=cv2.BORDER_REFLECT))
+    assert seen is not None
+    assert ends(seen.skeleton) <= 10  # the cross has four
 
 
 @pytest.mark.parametrize("shining", [False, True])
