@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sketch.kernel import depth
+from sketch.scoring import Fitted
 from sketch.shapes.bars import ASIDE, LIFT
-from sketch.shapes.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["Chosen", "merged"]

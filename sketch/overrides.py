@@ -12,10 +12,10 @@ from sim.scene import InputError
 from sketch.page.grouping import closing_chains, shafts
 from sketch.page.loose import Chain
 from sketch.page.pieces import Page, Piece
+from sketch.scoring import Fitted
 from sketch.shapes.bars import line_of_any_course, read_bar
 from sketch.shapes.marks import read_arrows, read_cross
 from sketch.shapes.outlines import read_outline
-from sketch.shapes.scoring import Fitted
 
 __all__ = ["KINDS", "Overrides", "forced_reading", "normal_overrides"]
 

@@ -1,7 +1,7 @@
 """Ink → scene: readings of groups of strokes, scored, and the set of them that explains all the ink best.
 
 What is optimized: the length of a description of the page. Every reading of a group of ink says what the
-ink is in fewer nats than saying the ink itself, point by point; that saving is its gain (`sketch.shapes.scoring`).
+ink is in fewer nats than saying the ink itself, point by point; that saving is its gain (`sketch.scoring`).
 The answer is the set of readings, each piece of ink in at most one, with the greatest total gain, found
 exactly (`sketch.search`): no other set of the readings at hand describes the page in fewer nats. It is
 found twice: first from the ink alone, then with what the bodies of the first answer say about the marks on
@@ -32,12 +32,12 @@ from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.page.pieces import Page
 from sketch.page.sampling import sampled
 from sketch.reading import Reading, Rival, scored
+from sketch.scoring import Fitted
 from sketch.search import Packing, Part, part
 from sketch.shapes.cutting import things_in
 from sketch.shapes.letters import Letters
 from sketch.shapes.placing import Placed, placed
 from sketch.shapes.proposals import Pick, Proposals, Proposed, proposing
-from sketch.shapes.scoring import Fitted
 
 __all__ = ["Reading", "Recognition", "Recognizer", "recognize"]
 

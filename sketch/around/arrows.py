@@ -11,8 +11,8 @@ import numpy as np
 
 from sketch.kernel import depths
 from sketch.page.pieces import Page, Piece
+from sketch.scoring import Fitted
 from sketch.shapes.proposals import Pick, Proposed, Row, proposing
-from sketch.shapes.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["likeliest_arrow", "pointing", "prefer_arrow"]

@@ -11,8 +11,8 @@ import numpy as np
 from sketch.around.pins import PINNED, REACH, is_over
 from sketch.around.writing import LARGEST, WITHIN, WRITTEN
 from sketch.kernel import beside, depth, gap
+from sketch.scoring import Fitted
 from sketch.shapes.proposals import Pick, Proposed, Row
-from sketch.shapes.scoring import Fitted
 from sketch.typing import Point
 
 __all__ = ["Context"]

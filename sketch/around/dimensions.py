@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sketch.page.pieces import Page, Piece
-from sketch.shapes.scoring import Fitted
+from sketch.scoring import Fitted
 
 __all__ = ["dimension_line"]
 

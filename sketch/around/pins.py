@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from sketch.kernel import depth
-from sketch.shapes.scoring import Fitted
+from sketch.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["PINNED", "REACH", "is_on_line", "is_over"]

@@ -14,8 +14,8 @@ from sketch.around.pins import REACH, is_over
 from sketch.around.rows import TALL, Rows, near_one_another
 from sketch.kernel import depth
 from sketch.page.pieces import Page
+from sketch.scoring import Fitted
 from sketch.shapes.proposals import Pick, Proposed, Row
-from sketch.shapes.scoring import Fitted
 from sketch.typing import Point
 
 __all__ = ["LARGEST", "WITHIN", "WRITTEN", "written"]

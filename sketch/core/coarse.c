@@ -1,9 +1,9 @@
 /* What it costs that a shape says ink less precisely than something smaller would. */
 #include "fit.h"
 
-static const double TREMOR = 0.05, SLOPPY = 0.1; /* as in sketch/shapes/scoring.py */
+static const double TREMOR = 0.05, SLOPPY = 0.1; /* as in sketch/scoring.py */
 
-/* Nats to say an observation that is off by so much [shares of a size]: as of `sketch.shapes.scoring.misfit`. */
+/* Nats to say an observation that is off by so much [shares of a size]: as of `sketch.scoring.misfit`. */
 static double misfit(double off) {
     return 0.5 * (log1p(off * off / (TREMOR * TREMOR)) + off * off / (SLOPPY * SLOPPY));
 }

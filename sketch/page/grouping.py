@@ -13,7 +13,7 @@ import numpy as np
 from sketch.kernel import Shaft, lent
 from sketch.page.loose import Chain
 from sketch.page.pieces import Page, Piece
-from sketch.shapes.scoring import Fitted
+from sketch.scoring import Fitted
 from sketch.typing import Array, Point
 
 __all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "crossing", "in_line", "shafts"]

@@ -12,7 +12,7 @@ import numpy as np
 from sketch.kernel import joined, measure
 from sketch.page.loose import Chain, End, LooseEnds
 from sketch.page.near import Near
-from sketch.shapes.scoring import unread
+from sketch.scoring import unread
 from sketch.typing import Array, Point
 
 __all__ = ["Looked", "Page", "Piece"]

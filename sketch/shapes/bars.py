@@ -10,8 +10,8 @@ import numpy as np
 
 from sketch.kernel import course, off_outline
 from sketch.page.pieces import Page, Piece
+from sketch.scoring import PARAMETER, Fitted, misfit_of
 from sketch.shapes.outlines import GAP, RETRACE
-from sketch.shapes.scoring import PARAMETER, Fitted, misfit_of
 from sketch.typing import Array
 
 __all__ = [

@@ -10,8 +10,8 @@ import numpy as np
 
 from sketch.kernel import words
 from sketch.page.pieces import Page
+from sketch.scoring import PARAMETER, Fitted
 from sketch.shapes.proposals import MEANT, Proposed, proposing
-from sketch.shapes.scoring import PARAMETER, Fitted
 
 __all__ = ["Letter", "Letters"]
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from sketch.kernel import ArrowFit, Shaft, fit_arrows, off_outline, within
 from sketch.page.pieces import Page, Piece
+from sketch.scoring import FREE, PARAMETER, Fitted, meaningless, misfit, misfit_of
 from sketch.shapes.outlines import RETRACE
-from sketch.shapes.scoring import FREE, PARAMETER, Fitted, meaningless, misfit, misfit_of
 from sketch.typing import Array
 
 __all__ = ["read_arrows", "read_cross", "read_cross_over", "with_strays"]

@@ -14,7 +14,7 @@ from sketch.kernel import ClosedFit, course_around, fit_closed, off_outline, rin
 from sketch.page.loose import Chain
 from sketch.page.pieces import Page, Piece
 from sketch.page.sampling import arced, unevenness
-from sketch.shapes.scoring import FREE, PARAMETER, Fitted, misfit
+from sketch.scoring import FREE, PARAMETER, Fitted, misfit
 from sketch.typing import Array
 
 __all__ = ["LEAST_AXIS", "gone_over", "read_borrowing", "read_outline"]

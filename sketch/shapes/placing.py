@@ -9,7 +9,7 @@ import numpy as np
 
 from sketch.kernel import SIDES, off_outline, place
 from sketch.page.pieces import Page
-from sketch.shapes.scoring import Fitted
+from sketch.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["Placed", "placed"]

@@ -22,11 +22,11 @@ from sketch.kernel import off_outline
 from sketch.page.grouping import WIDE, closing_chains, closing_ink, crosses, crossing, in_line, shafts
 from sketch.page.loose import Chain, End
 from sketch.page.pieces import Looked, Page, Piece
+from sketch.scoring import Fitted, misfit_of
 from sketch.search import Part, part
 from sketch.shapes.bars import bars_again, read_bar, read_bar_of_two, read_line, read_line_gone_over
 from sketch.shapes.marks import read_arrows, read_cross, read_cross_over, with_strays
 from sketch.shapes.outlines import LEAST_AXIS, gone_over, read_borrowing, read_outline
-from sketch.shapes.scoring import Fitted, misfit_of
 from sketch.typing import Array, Box
 
 __all__ = ["HOPELESS", "Pick", "Proposals", "Proposed", "Row", "proposing"]

@@ -10,9 +10,9 @@ from pages import measured
 
 from sketch.ink import Sketch, Stroke
 from sketch.page.pieces import Page
+from sketch.scoring import meaningless, misfit
 from sketch.shapes.bars import STRAIGHT, read_bar_of_two
 from sketch.shapes.marks import read_cross
-from sketch.shapes.scoring import meaningless, misfit
 
 Point = tuple[float, float]
 

@@ -18,7 +18,7 @@ from sketch.scan.binding import coarseness, course_length
 from sketch.scan.skeleton.graph import Ink
 from sketch.scan.strokes.layout import CRUMB
 from sketch.scan.strokes.ways import SIDE, Way
-from sketch.shapes.scoring import STRANGE, Fitted
+from sketch.scoring import STRANGE, Fitted
 from sketch.typing import Points
 
 __all__ = ["Prices", "Taken", "lines"]

@@ -22,8 +22,8 @@ from sketch.scan.binding import course_length
 from sketch.scan.strokes.prices import Prices
 from sketch.scan.strokes.together import Together
 from sketch.scan.strokes.ways import Way
+from sketch.scoring import Fitted
 from sketch.shapes.proposals import HOPELESS, Proposals, Proposed, proposing
-from sketch.shapes.scoring import Fitted
 from sketch.typing import Array
 
 __all__ = ["settle"]

@@ -29,7 +29,7 @@ from sketch.scan.binding import (
     turns,
 )
 from sketch.scan.paper.fills import fill_grain
-from sketch.shapes.scoring import misfit
+from sketch.scoring import misfit
 
 
 @given(st.integers(0, 2**32), st.booleans())
