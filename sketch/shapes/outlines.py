@@ -164,16 +164,22 @@ def _read(
         far = rough[4] + misfit(square + fit.extra, count) - misfit(square, count)
         cost = far + BOX + fit.lacks[4] + besides + cornered + off[4]
         out.append(fitted("rectangle", cost=cost, outline=fit.rectangle, model=BOX, rough=far))
-    least = min(f.cost for f in out)
-    if (
-        fit.gap < WIDE * fit.ink and FREEFORM + gaps + 3 * ARC < least
-    ):  # else it is not said in fewer however well it fits
-        arcs = range(3, MOST_SIDES + 1)
-        bent = FREEFORM + gaps + min(misfit(fit.residual[k], count) + ARC * k for k in arcs)
-        course = course_around(np.concatenate(parts)) if bent < least else None
-        if course is not None:
-            out.append(fitted("free", cost=bent, outline=course, model=FREEFORM + 3 * ARC))
+    bent = _of_any_course(parts, fit, count, gaps, min(f.cost for f in out))
+    if bent is not None:
+        out.append(fitted("free", cost=bent[0], outline=bent[1], model=FREEFORM + 3 * ARC))
     return out
+
+
+def _of_any_course(
+    parts: list[Array], fit: ClosedFit, count: float, gaps: float, least: float
+) -> tuple[float, Array] | None:
+    """Nats to say ink as an outline of any course, and that outline; None where it takes more than `least`."""
+    if fit.gap > WIDE * fit.ink or FREEFORM + gaps + 3 * ARC > least:
+        return None
+    arcs = range(3, MOST_SIDES + 1)
+    bent = FREEFORM + gaps + min(misfit(fit.residual[k], count) + ARC * k for k in arcs)
+    course = course_around(np.concatenate(parts)) if bent < least else None
+    return None if course is None else (bent, course)
 
 
 def _turning(fit: ClosedFit, sides: int, steps: int) -> tuple[float, float]:
