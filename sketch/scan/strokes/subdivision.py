@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from cmath import phase
 from collections import Counter
-from collections.abc import Sequence, Set
+from collections.abc import Set
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -210,26 +210,15 @@ class Subdivision:
         along = self._thin_beside(corner[0]) | self._thin_beside(corner[-1])
         others = [
             self._leaving(other)
-            for other in self._lines_from(corner[1:])
-            if other >> 1 not in own and along.isdisjoint(self._thin_beside(other))
+            for h in corner[1:]
+            for other in self._around[h]
+            if other >> 1 not in own and self.length[other >> 1] > STUB * self.pen
+            if along.isdisjoint(self._thin_beside(other))
         ]
         ends = (corner[0], back), (corner[-1], ahead)
         return frozenset(
             h >> 1 for h, here in ends if min((_turn(here, other) for other in others), default=turn) < SMOOTH
         )
-
-    def _lines_from(self, corner: Sequence[int]) -> list[int]:
-        """The lines that leave a corner, which thinning may have pulled apart into several nodes."""
-        reached = dict.fromkeys(other for h in corner for other in self._around[h])
-        queue, lines = list(reached), list[int]()
-        for h in queue:
-            if self.length[h >> 1] > STUB * self.pen:
-                lines.append(h)
-            else:
-                more = dict.fromkeys(other for other in self._around.get(h ^ 1, ()) if other not in reached)
-                reached |= more
-                queue += more
-        return lines
 
     def _thin_beside(self, h: int) -> set[int]:
         """The thin faces beside an edge."""

@@ -8,13 +8,13 @@ import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sheets import drawn, encoded, even
+from sheets import drawn, encoded
 
 from sim.scene import Polygon, Rectangle, Scene
 from sketch.recognize import recognize
 from sketch.scan import read_picture
 from sketch.scan.binding import thin, trace
-from sketch.scan.skeleton.graph import Edge, Graph, build_graph
+from sketch.scan.skeleton.graph import Graph, build_graph
 from sketch.scan.skeleton.stretches import Stretches
 from sketch.scan.strokes.closing import ends_cost
 from sketch.scan.strokes.faces import standing
@@ -167,17 +167,3 @@ def test_a_base_that_is_lent_is_not_cut_short_but_where_a_side_crosses_it(low: f
     box = {base in way.ink: way.strain for way in found if way.points[:, 1].max() < 310}
     assert box[False] == crossings * ends_cost(2)
     assert box[True] == crossings * ends_cost(2) + (2 - crossings) * ends_cost(1)
-
-
-@pytest.mark.parametrize("apart", [0.0, 3.0, 5.0])
-def test_lines_that_cross_where_thinning_pulled_them_apart_would_have_to_end_too(apart: float) -> None:
-    """A diamond whose sides go on beyond two of its corners, where the lines meet in two nodes instead of one."""
-    near, far = [(100.0, 100.0), (200.0, 100.0)], [(100 - apart, 100.0), (200 + apart, 100.0)]
-    edges = [Edge(even(near[0], (150, 100 + d), near[1]), (0, 1)) for d in (-50, 50)]
-    for node, (a, b, on) in enumerate(zip(near, far, (-40, 40), strict=True)):
-        edges += [Edge(even(a, b), (node, node + 2))] if apart else []
-        for d in (-40, 40):
-            edges.append(Edge(even(b, (b[0] + on, 100 + d)), (node + 2 if apart else node, -1)))
-    plane = Subdivision(edges, [], PEN)
-    (face,) = plane.faces
-    assert plane.outline({face}).strain == 2 * ends_cost(2)
