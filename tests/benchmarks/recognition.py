@@ -6,13 +6,13 @@ what, what must not change a reading, ink without a meaning, whether scores mean
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 import zlib
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from pathlib import Path
 from typing import TypeVar
 
@@ -201,11 +201,12 @@ class Bench:
         papers = list(PAPERS)
         tally: dict[str, list[Judged]] = {name: [] for name in papers}
         for k in self.each(range(count // PAPER), "drawings on paper"):
-            drawing = draw(k, seed + 4, WRITERS)
-            if judge(drawing).wrong:
-                continue
             for i in range(PAPER):
                 name = papers[(PAPER * k + i) % len(papers)]
+                drawn = (draw(number, seed + 4, WRITERS) for number in itertools.count(k))
+                drawing = next(filter(PAPERS[name].shows, drawn))
+                if judge(drawing).wrong:
+                    continue
                 data, seen = photographed(drawing, PAPERS[name], np.random.default_rng([seed, k, i]))
                 j = judge(seen, data)
                 tally[name].append(j)
@@ -368,7 +369,7 @@ def _reliability(pairs: list[tuple[float, bool]]) -> None:
     """Of the readings with a score in some range, how many are right."""
     scores, good = np.array([s for s, _ in pairs]), np.array([g for _, g in pairs])
     print(f"    {'score':<16}{'readings':>9}{'mean':>9}{'right':>9}")
-    for low, high in pairwise(BINS):
+    for low, high in itertools.pairwise(BINS):
         within = (scores >= low) & ((scores < high) | (high == 1.0))
         if within.any():
             share = f"{100 * good[within].mean():8.1f}%"

@@ -87,6 +87,11 @@ class Paper:
     noise: float = 2.0
     quality: int = 85
 
+    def shows(self, drawing: Drawing) -> bool:
+        """Whether all of a drawing is seen on it: a fill as dark as the ink hides marks."""
+        hides = self.filled and self.tint == 1.0
+        return not hides or not (drawing.joints or any(body.anchored for body in drawing.bodies))
+
 
 PHOTO = Paper(shade=0.7, tilt=4, turn=2, noise=3)
 PENCIL = replace(PHOTO, color=(95, 92, 90), cover=0.8, grain=0.28, pen=2.4)
