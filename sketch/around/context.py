@@ -144,7 +144,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= ANCHORS * any(bodies.under(c, extent))
             slips = len(c.pieces) * (extent < TWIG * drawn)  # each stroke of a tiny one is
             gains[k] -= SLIP * (slips + bodies.slip(c, extent))
-        elif c.kind == "ellipse":
+        elif c.kind in ("ellipse", "free"):
             gains[k] -= ANCHORS * (extent < LARGEST * drawn)  # what is so small and no ring is written
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or bodies.slip(c, extent))

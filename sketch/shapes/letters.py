@@ -1,4 +1,5 @@
-"""Letters: small strokes, alone or a few that touch, of which nothing more is said than that they were written."""
+"""Letters: small strokes, alone or a few that touch or go around, of which no more is said than that they were
+written."""
 
 from __future__ import annotations
 
@@ -28,6 +29,9 @@ SURER = 10.0  # nats, at most, that a letter gains beyond an X of its ink: a bod
 SHORT = 0.6  # of the bars of an X: what is no longer, and touches them, is a loose side of it
 TOUCHING = 0.12  # of the smaller stroke: what is between the strokes of one letter
 MOST_STROKES = 4  # of one letter
+MOST_CORNERS = (
+    4  # of a body so plain that it is no letter, though it was drawn in several strokes that do not touch
+)
 NOWHERE = np.zeros((1, 2))  # a letter's outline: none
 
 
@@ -57,11 +61,11 @@ class Letters:
 
     def __init__(self) -> None:
         self._drawn = 0.0
-        self._alone: dict[Proposed, tuple[int, int]] = {}
+        self._alone: dict[Proposed, tuple[int, int, list[tuple[int, ...]]]] = {}
         self._known: dict[tuple[Proposed, ...], Letter | None] = {}
 
     def possible(self, page: Page, proposed: Sequence[Proposed]) -> list[Letter]:
-        """Each small stroke as a letter, but straight ones and rings, and those that touch as one.
+        """Each small stroke as a letter, but straight ones and rings, and those that touch or go around as one.
 
         proposed: what the pieces mean else, in the order of drawing.
         """
@@ -70,19 +74,21 @@ class Letters:
         largest = LARGEST * page.drawn
         of = {i: p for (i, q), p in zip(page.pieces.items(), proposed, strict=False) if q.extent < largest}
         alone, self._alone = self._alone, {}
-        groups = []
+        groups, outlines = [], []
         for i, p in of.items():
             there = alone.get(p)
-            self._alone[p] = best, ring = _alone(p, i) if there is None else there
+            self._alone[p] = best, ring, around = _alone(p, i) if there is None else there
             if ring >= 0 and page.pieces[i].extent < NAIL * page.drawn:
                 plain = best == ring
             else:
                 plain = best >= 0 and _is_straight(p.candidates[best])
             if not plain:
                 groups.append((i,))
+            outlines += [group for group in around if of.keys() >= set(group)]
         known, self._known = self._known, {}
         out = []
-        for group in groups + _touching(page, {i: page.pieces[i].extent for i in of}):
+        touching = _touching(page, {i: page.pieces[i].extent for i in of})
+        for group in groups + touching + sorted(set(outlines).difference(touching)):
             key = tuple(map(of.__getitem__, group))
             letter = known[key] if key in known else self._read(page, of, group)
             self._known[key] = letter
@@ -109,17 +115,22 @@ class Letters:
         return Letter(proposing([Fitted("letter", group, 0.0, NOWHERE)], [gain]), tuple(marks))
 
 
-def _alone(proposed: Proposed, index: int) -> tuple[int, int]:
-    """Which of what a piece proposed for its own ink gains the most, and which is a ring; -1 for none."""
+def _alone(proposed: Proposed, index: int) -> tuple[int, int, list[tuple[int, ...]]]:
+    """Which of what a piece proposed for its own ink gains the most, and which is a ring, -1 for none; and which few
+    pieces go around as neither a ring nor a plain body, as those of a "D" do whose stem its bow does not touch."""
     best, ring = -1, -1
     gains = proposed.gains
+    around: dict[tuple[int, ...], tuple[float, bool]] = {}
     for k, c in enumerate(proposed.candidates):
+        if c.closed and 1 < len(c.pieces) <= MOST_STROKES and gains[k] > 0:
+            its = gains[k], c.kind != "circle" and len(c.outline) > MOST_CORNERS
+            around[c.pieces] = max(around.get(c.pieces, its), its)
         if gains[k] > 0 and c.pieces == (index,):
             if c.kind == "circle" and (ring < 0 or gains[k] > gains[ring]):
                 ring = k
             if best < 0 or gains[k] > gains[best]:
                 best = k
-    return best, ring
+    return best, ring, [pieces for pieces, (_, is_odd) in around.items() if is_odd]
 
 
 def _crosses(

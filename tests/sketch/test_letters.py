@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from pages import box, read
@@ -10,7 +12,7 @@ from test_writing import HAND, word
 
 from sketch.ink import Sketch, Stroke
 from sketch.recognize import recognize
-from sketch.synthetic import arrow, circle, cross, line, outline
+from sketch.synthetic import arrow, circle, cross, curve, line, outline
 
 
 @pytest.mark.parametrize("letter", "ADagkp4")
@@ -24,6 +26,33 @@ def test_a_letter_beside_a_machine_is_no_body(letter: str, height: float) -> Non
     assert meaning(seen) == meaning(recognize(sketch))
     left = {s for r in seen.readings if r.kind == "unread" for s in r.strokes}
     assert left >= set(range(first, first + len(ink)))
+
+
+@pytest.mark.parametrize("size", [24, 40, 60])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_d_whose_bow_misses_its_stem_is_a_letter(seed: int, size: float) -> None:
+    """Two strokes that go around, with gaps: of no course that a body so small has."""
+    rng = np.random.default_rng(seed)
+    t = np.linspace(-math.pi / 2, math.pi / 2, 20)
+    stem = line([(300, 300), (300, 300 + size)], HAND, rng)
+    round_side = np.stack([0.3 + 0.25 * np.cos(t), 0.5 + 0.5 * np.sin(t)], axis=1)
+    bow = (300, 300) + size * np.array([(0.12, 0.0), *round_side.tolist(), (0.12, 1.0)])
+    sketch = cart(HAND, rng)
+    found = recognize(Sketch([*sketch.strokes, *map(Stroke, stem + curve(bow, HAND, rng))]))
+    assert meaning(found) == meaning(recognize(sketch))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_small_outline_of_any_course_is_written(seed: int) -> None:
+    """A bean beside a machine; one as large as a wheel is a body."""
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0, 2 * math.pi, 60)
+    bean = np.stack([np.cos(t), 0.7 * np.sin(t) - 0.5 * np.cos(t) ** 2], axis=1)
+    sketch = cart(HAND, rng)
+    for radius, bodies in ((20, 0), (60, 1)):
+        ink = curve((300, 200) + radius * bean, HAND, rng)
+        found = recognize(Sketch([*sketch.strokes, *map(Stroke, ink)]))
+        assert len(found.scene.bodies) == len(recognize(sketch).scene.bodies) + bodies
 
 
 @pytest.mark.parametrize("seed", range(6))
