@@ -247,11 +247,11 @@ def _axle(wheel: Drawn, ring: Drawn, bodies: Bodies) -> list[Drawn]:
 
 
 def _joined(wheel: Drawn, other: Drawn, ring: Drawn, bodies: Bodies) -> bool:
-    """Whether a further ring, no larger than twice the size of one, lies over both a wheel and another body."""
+    """Whether a further ring, no larger than twice the size of one, reaches both a wheel and another body."""
     near = bodies.near(wheel.middle, wheel.radius)
     rings = (d for d in near if d.reading.kind in ("circle", "pivot") and d not in (ring, wheel))
     return any(
-        _off(wheel, further) <= 0 and _off(other, further) <= 0
+        max(_off(wheel, further), _off(other, further)) < further.radius
         for further in rings
         if further.size < 2 * ring.size
     )

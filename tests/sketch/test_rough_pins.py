@@ -112,3 +112,19 @@ def test_a_pin_may_join_two_lines(seed: int) -> None:
     scene = read(ceiling, rope, bob, ground, ball, rings).scene
     assert sorted(joint.bodies for joint in scene.joints) == [("b1", "b2"), ("b2", "b3")]
     assert len(scene.bodies) == 5
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_rod_that_ends_short_of_its_pin_is_none_that_the_wheel_turns_on(seed: int) -> None:
+    """A crank wheel nailed to the page: its rod begins beside the middle of the pin on the wheel's rim."""
+    rng = np.random.default_rng(seed)
+    wheel = circle((330, 400), 96, HAND, rng)
+    block = outline(box(800, 400, 140, 90), HAND, rng)
+    con_rod = outline(box(568, 370, 480, 26, 0.13), HAND, rng)
+    rings = [circle(at, 8, HAND, rng) for at in ((330, 400), (326, 338), (790, 400))]
+    scene = read(wheel, block, con_rod, *rings).scene
+    assert sorted(tuple(map(str, joint.bodies)) for joint in scene.joints) == [
+        ("b1", "None"),
+        ("b1", "b3"),
+        ("b2", "b3"),
+    ]
