@@ -27,6 +27,8 @@ INKED = 99.5  # percent of a sheet that is certainly not ink
 HALF = 0.5  # of the ink's contrast: what has more is a line
 LINE = 0.2  # of the light: what takes less away is no line
 ACROSS = 3  # [pixels]: a line that runs so far to either side of an edge crosses it
+DRAWN = 0.05  # of the picture's size: marks that are as large were drawn,
+SEVERAL = 2  # where there are as many
 NOTABLE = 0.03  # of the picture: smaller regions are no part of the sheet that matters
 STEP = 0.04  # of the light: how much of it changes at the edge of a sheet, at least
 ROUGH = 4.0  # times what changes everywhere: likewise
@@ -266,15 +268,17 @@ def _outside(sheet: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _shadows(
     inner: Image, sheet: NDArray[np.bool_], bright: Image, small: Image, whiteness: NDArray[Any]
 ) -> list[Image]:
-    """The regions beside the sheet that are paper in a deep shadow: as white as it, and lines run into them.
+    """The regions beside the sheet that are paper in a deep shadow: as white as it, and lines run into them, or several
+    lie within.
 
-    Nobody draws from the sheet on to the table.
+    Nobody draws on the table.
     """
     import cv2
 
     dark = _inked(small, bright, sheet)
-    _, lines = cv2.connectedComponents(dark.astype(np.uint8), connectivity=8)
-    on_sheet = np.bincount(lines[sheet & dark], minlength=int(lines.max()) + 1) >= ACROSS
+    _, lines, boxes, _ = cv2.connectedComponentsWithStats(dark.astype(np.uint8), connectivity=8)
+    on_sheet = np.bincount(lines[sheet & dark], minlength=len(boxes)) >= ACROSS
+    drawn = np.hypot(boxes[:, cv2.CC_STAT_WIDTH], boxes[:, cv2.CC_STAT_HEIGHT]) > DRAWN * inner.size**0.5
     count, regions, stats, _ = cv2.connectedComponentsWithStats(inner, connectivity=4)
     white = TINGE * median(whiteness[sheet])
     off = _outside(sheet)  # what the sheet surrounds is filled, and no shadow
@@ -286,7 +290,10 @@ def _shadows(
         if not off[region].any() or median(whiteness[region]) < white:
             continue
         there = np.bincount(lines[region & dark], minlength=len(on_sheet)) >= ACROSS
-        if np.any(on_sheet[1:] & there[1:]):
+        within = cv2.erode(region.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0) > 0
+        beyond = np.bincount(lines[~within & dark], minlength=len(on_sheet)) > 0
+        alone = np.count_nonzero((there & drawn & ~beyond)[1:])
+        if np.any(on_sheet[1:] & there[1:]) or alone >= SEVERAL:
             found.append(region.astype(np.uint8))
     return found
 
