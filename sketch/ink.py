@@ -22,12 +22,14 @@ class Stroke:
     Attributes:
         points: [pixels], y down, shape (n, 2), finite.
         times: [ms], shape (n,), or None.  Never to be relied on: it may be doubled or run backwards.
+        remains: whether it is, on a picture, what is left of the ink of strokes that it runs into: no letter.
 
     Raises InputError for points that are not so.
     """
 
     points: Array
     times: Array | None = None
+    remains: bool = False
 
     def __post_init__(self) -> None:
         try:

@@ -209,7 +209,9 @@ class Recognizer:
         likely = [pick for pick in likely if pick[0] < len(proposed)]
         told = self._context.told(proposed, likely, page.size, page.drawn)
         told, elsewhere, pointed = pointing(page, proposed, told, likely)
-        told = written(page, proposed, told, likely, elsewhere)
+        left = (its for key, its in self._pieces.items() if self._strokes[key].remains)
+        remains = frozenset(i for its in left for i in its)
+        told = written(page, proposed, told, likely, elsewhere, remains)
         known = {i: (p.gains, gains) for i, p, gains in zip(page.pieces, proposed, told, strict=False)}
         aside = [*(letter.proposed for letter in letters if not letter.is_none(known)), pointed]
         proposed, told = [*proposed, *aside], [*told, *(p.gains for p in aside)]

@@ -36,20 +36,26 @@ SPOKE = 0.05  # of its length, what a spoke bends
 STRAIGHT = 0.9  # of its length, the distance of the ends of a letter's bar, at least
 OVER = 1.2  # times as large as a mark is what it is a mark on, at least
 HATCHED = WRITTEN  # nats that a stroke of hatching is no side of an outline
+LEFT = WITHIN  # nats that an outline no larger than a letter is rarer, if all of it is such as tracing left
 MEASURE = WRITTEN  # nats that a line with a mark at either end is no rod
 
 
 def written(
-    page: Page, proposed: list[Proposed], told: list[list[float]], likely: list[Pick], pointing: set[int]
+    page: Page,
+    proposed: list[Proposed],
+    told: list[list[float]],
+    likely: list[Pick],
+    pointing: set[int],
+    remains: frozenset[int],
 ) -> list[list[float]]:
     """Gains, less what rings, crosses and bars lose by what is written there.
 
     told: the gains of all that is proposed.  likely: which of it the ink makes likely.  pointing: the pieces of arrows
-    that are no gravity.
+    that are no gravity.  remains: what tracing left of the ink of others, which means nothing and is no letter.
     """
     chosen = [(proposed[p].candidates[k], told[p][k], proposed[p].rows[k]) for p, k in likely]
     marks = _Marks(page, [(c, row) for c, _, row in chosen], LARGEST * page.drawn)
-    letters = marks.in_bodies()
+    letters = marks.in_bodies() - remains
     pins = {  # among those, each as a ring
         i
         for p, _ in likely
@@ -62,13 +68,14 @@ def written(
         c for (c, gain, _), own in zip(chosen, alone, strict=True) if c.kind == "cross" and gain < own
     }
     meant = {i for c, *_ in chosen if c.kind != "bar" and c not in idle_crosses for i in c.pieces}
-    rows, idle, known = _spread(page, marks, chosen, pointing | (page.pieces.keys() - meant) | letters - pins)
+    unmeant = page.pieces.keys() - meant - remains
+    rows, idle, known = _spread(page, marks, chosen, pointing | unmeant | letters - pins)
     lone = [page.pieces[i] for i in sorted(idle)]
     bars = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)
     lines = (dimension_line(page, bar, lone) for bar in bars if idle >= set(bar.pieces))
     measured = pointing.union(*lines)
     hatched = hatching(page, marks.largest, idle)
-    touched = rows.of.keys() | measured | letters | hatched
+    touched = rows.of.keys() | measured | letters | hatched | remains
     out = list(told)
     for n, p in enumerate(proposed):
         if touched.isdisjoint(p.pieces):
@@ -81,6 +88,7 @@ def written(
                 if c.closed and not letters.isdisjoint(c.pieces):
                     own[k] -= WITHIN * (c.kind != "circle" or pins.isdisjoint(c.pieces))
                 own[k] -= HATCHED * (c.closed and len(hatched.intersection(c.pieces)))
+                own[k] -= LEFT * (c.closed and row[4] < marks.largest and remains.issuperset(c.pieces))
     return out
 
 

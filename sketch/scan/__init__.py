@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from sim.scene import InputError
-from sketch.ink import Sketch, Stroke
+from sketch.ink import Sketch
 from sketch.scan.decode import decode, is_picture
 
 __all__ = ["is_picture", "read_picture"]
@@ -41,5 +41,4 @@ def read_picture(data: bytes, *, page: int = 1, stages: str | os.PathLike[str] |
     if not traced.strokes:
         problem = traced.problem or "no ink was found on the picture: nothing was drawn"
         raise InputError("", problem, "; ".join(notes), kind="empty")
-    strokes = [Stroke(points) for points in traced.strokes]
-    return Sketch(strokes, float(width), float(height), None, picture, notes)
+    return Sketch(traced.strokes, float(width), float(height), None, picture, notes)

@@ -47,7 +47,7 @@ def _over(picture: NDArray[Any], traced: Traced) -> NDArray[Any]:
             [[[round(179 * (0.382 * k % 1)), 255, 200]]], np.uint8
         )  # the golden angle tells neighbours apart
         color = tuple(int(c) for c in cv2.cvtColor(hue, cv2.COLOR_HSV2BGR)[0, 0])
-        points = np.round(stroke * 16).astype(np.int32)
+        points = np.round(stroke.points * 16).astype(np.int32)
         cv2.polylines(image, [points], False, color, wide, cv2.LINE_AA, 4)
         cv2.circle(image, points[0].tolist(), 48 * wide, color, cv2.FILLED, cv2.LINE_AA, 4)
         cv2.circle(image, points[-1].tolist(), 80 * wide, color, wide, cv2.LINE_AA, 4)

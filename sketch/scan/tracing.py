@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sketch.ink import Stroke
 from sketch.scan.binding import Chains, smoothed
 from sketch.scan.looking import Seen, look
 from sketch.scan.skeleton.corners import begin_at_corner, sharpen_corners
@@ -22,6 +23,7 @@ from sketch.scan.strokes.faces import standing, with_all_ink
 from sketch.scan.strokes.hidden import going_on
 from sketch.scan.strokes.overlaps import overlapping
 from sketch.scan.strokes.prices import lines
+from sketch.scan.strokes.remains import remaining
 from sketch.scan.strokes.rings import find_rings, take_rings
 from sketch.scan.strokes.settle import settle
 from sketch.scan.strokes.subdivision import Subdivision, bridged
@@ -42,12 +44,12 @@ class Traced:
     """What was read of a picture.
 
     Attributes:
-        strokes: each shape (n, 2) [pixels of the picture].
+        strokes: in the pixels of the picture.
         seen: what they were read from; None where the picture is too small to show anything.
         problem: why nothing was read, if there was something.
     """
 
-    strokes: list[Points]
+    strokes: list[Stroke]
     seen: Seen | None
     problem: str = ""
 
@@ -65,7 +67,7 @@ def trace_picture(picture: Image) -> Traced:
     return Traced(_strokes(chains, seen), seen)
 
 
-def _strokes(chains: Chains, seen: Seen) -> list[Points]:
+def _strokes(chains: Chains, seen: Seen) -> list[Stroke]:
     """The strokes of the ink that was seen: of all that may have been drawn, what makes the most sense together."""
     page, mask, distance, pen = seen.page, seen.mask, seen.distance, seen.pen
     graph = build_graph(chains, distance, pen)
@@ -77,7 +79,7 @@ def _strokes(chains: Chains, seen: Seen) -> list[Points]:
     plain = ways.likeliest() + rings.certain + rings.doubtful
     likeliest = [_drawn(way, seen) for way in plain]
     if ways.is_net:
-        return _points(likeliest)
+        return _drawn_as(likeliest)
     stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
     others = [_drawn(way, seen) for way in with_all_ink(ways.others(), stretches)]
     others += [_drawn(way, seen) for way in _in_tangles(rings.tangles, likeliest + others, pen)]
@@ -88,14 +90,18 @@ def _strokes(chains: Chains, seen: Seen) -> list[Points]:
     others += [_drawn(way, seen) for way in going_on(plain, distance, pen)]
     others += [_drawn(way, seen) for way in crossed(drawn, plain, distance, pen)]
     if not others and not overlaps:
-        return _points(likeliest)
+        return _drawn_as(likeliest)
     height, width = mask.shape
     ends = lines(likeliest + others + overlaps, pen * seen.scale)
     canvas = width * seen.scale, height * seen.scale
     chosen = settle(likeliest, others, overlaps, ends, pen * seen.scale, canvas)
     used = frozenset(name for way in chosen for name in way.ink)
     left = [ring for ring in rings.certain if (used & ends.keys()).isdisjoint(ring.ink)]
-    return _points(chosen + [_drawn(way, seen) for way in ways.likeliest(without=used) + left])
+    others = [_drawn(way, seen) for way in ways.likeliest(without=used) + left]
+    remains = remaining(others, chosen, drawn, seen.scale)
+    return _drawn_as(chosen + [way for way in others if way not in remains]) + _drawn_as(
+        remains, remains=True
+    )
 
 
 class _Rings(NamedTuple):
@@ -148,9 +154,10 @@ def _drawn(way: Way, seen: Seen) -> Way:
     return Way((points + 0.5) * seen.scale - 0.5, ink, way.strain)
 
 
-def _points(ways: list[Way]) -> list[Points]:
-    """The ways as strokes; a single point is none."""
-    return [way.points for way in ways if len(way.points) > 1]
+def _drawn_as(ways: list[Way], *, remains: bool = False) -> list[Stroke]:
+    """The ways as strokes; a single place is none. remains: whether they are what others left of their ink."""
+    strokes = [Stroke(way.points, remains=remains) for way in ways]
+    return [stroke for stroke in strokes if stroke.has_length]
 
 
 def smooth(points: Points, sigma: float) -> Points:
