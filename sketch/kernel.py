@@ -17,7 +17,6 @@ from sketch.typing import Array, Point
 __all__ = [
     "SIDES",
     "ArrowFit",
-    "ClosedFit",
     "Point",
     "Shaft",
     "Strokes",
@@ -28,7 +27,6 @@ __all__ = [
     "depth",
     "depths",
     "fit_arrows",
-    "fit_closed",
     "gap",
     "is_simple",
     "joined",
@@ -45,12 +43,8 @@ __all__ = [
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
 COURSE = 32  # as in core/course.c
 LENT = 1000  # points of a side that is lent, at most: MOST_STEPS of core/lend.c
-LIFT = 6  # numbers that a struct Lift of core/outline.h takes
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, _pointer, _pointer)(
-    ("ink_closed", _lib)
-)
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
 _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _pointer, _pointer, _double, _pointer, _pointer)(
     ("ink_arrows", _lib)
@@ -100,45 +94,6 @@ class Strokes(NamedTuple):
     vertices: Array
 
 
-class ClosedFit(NamedTuple):
-    """Readings of a closed chain of ink, in its normal frame where not said otherwise (see core/outline.c).
-
-    Attributes:
-        mean: the frame's origin [pixels].  back: (2, 2), pixel = mean + back @ normal.
-        ink, gap: lengths of the ink and of the gaps.
-        conic: a, b, c, d, e of x² + y² = a(x² - y²) + 2bxy + cx + dy + e.
-        ellipse_cost: nats to say the ink, given it.
-        circle: centre and radius [pixels].  circle_cost: nats to say the ink, given it.
-        residual: mean squared distance of the best k-gon, for k = 0 .. SIDES.
-        cost: nats to say the ink, given that polygon.  lacks: nats for what of it nobody drew.
-        corners: of those polygons [pixels], (SIDES + 1, SIDES, 2).
-        rectangle: the nearest to the quadrilateral [pixels], (4, 2).  extra: what it adds to residual[4]; infinite
-            for none.
-        turning: how much of the ink's turning is at the corners of the k-gon, from 0, where it turns evenly, to 1; 0 of
-            those with more than 7 sides.
-    """
-
-    mean: Array
-    back: Array
-    ink: float
-    gap: float
-    conic: Array
-    ellipse_cost: float
-    circle: tuple[float, float, float]
-    circle_cost: float
-    residual: list[float]
-    cost: list[float]
-    lacks: list[float]
-    corners: Array
-    rectangle: Array
-    extra: float
-    turning: Array
-
-    def vertices(self, sides: int) -> Array:
-        """Corners of the best polygon of so many sides [pixels], (sides, 2)."""
-        return self.corners[sides, :sides].copy()
-
-
 class Shaft(NamedTuple):
     """What may be an arrow's shaft.
 
@@ -171,11 +126,6 @@ class ArrowFit(NamedTuple):
     off: list[float]
 
 
-# of a struct Closed of core/outline.c, in order
-_COUNTS = (10, 2, 10, SIDES + 1, SIDES + 1, SIDES + 1, 2 * SIDES * (SIDES + 1), 9, SIDES + 1)
-_OFFSETS = tuple(sum(_COUNTS[:k]) for k in range(len(_COUNTS) + 1))
-
-
 def measure(strokes: list[Array]) -> Strokes:
     """Clean, sample and measure strokes, each (n, 2) in pixels."""
     count = len(strokes)
@@ -198,54 +148,6 @@ def joined(a: Strokes, b: Strokes) -> Strokes:
     samples, residual, vertices = (np.concatenate(pair) for pair in zip(a[3:], b[3:], strict=True))
     rows = np.concatenate([a.measure, b.measure])
     return Strokes(a.points[:0], a.ends[:0], rows, samples, residual, vertices)
-
-
-def fit_closed(
-    parts: list[Array],
-    least_axis: float,
-    cap: float,
-    observations: float,
-    side: float,
-    hopeless: float,
-    undrawn: float,
-) -> ClosedFit:
-    """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
-    xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
-    ends = (_int * len(parts))(*accumulate(map(len, parts)))
-    out = np.empty(_OFFSETS[-1] + 2 * len(xy) + LIFT * len(parts))
-    at = address(out)
-    _closed(
-        address(xy),
-        ctypes.addressof(ends),
-        len(parts),
-        least_axis,
-        cap,
-        observations,
-        side,
-        hopeless,
-        undrawn,
-        at,
-        at + 8 * _OFFSETS[-1],
-    )
-    _, length, conic, residual, cost, lacks, corners, rectangle, turning, rest = _OFFSETS
-    scalars = out[:corners].tolist()
-    return ClosedFit(
-        out[0:2],
-        out[6:10].reshape(2, 2),
-        scalars[length],
-        scalars[length + 1],
-        out[conic : conic + 5],
-        scalars[conic + 5],
-        (scalars[conic + 6], scalars[conic + 7], scalars[conic + 8]),
-        scalars[conic + 9],
-        scalars[residual:cost],
-        scalars[cost:lacks],
-        scalars[lacks:],
-        out[corners:rectangle].reshape(SIDES + 1, SIDES, 2),
-        out[rectangle + 1 : turning].reshape(4, 2).copy(),
-        float(out[rectangle]),
-        out[turning:rest],
-    )
 
 
 def fit_arrows(

@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Fitted", "meaningless", "misfit", "misfit_of", "unread"]
 
-TREMOR = 0.05  # spread of ink about what was meant, as a share of its size; of outlines it is less, see core/outline.c
-SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius; as in core/outline.h
+# spread of ink about what was meant, as a share of its size; of outlines it is less
+TREMOR = 0.05  # as in core/scoring.h
+SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius; as in core/outline.h and core/scoring.h
 PARAMETER = 4.0  # nats to say one parameter to that precision: about ln(page / tremor)
 FREE = 4.0  # nats an observation to say ink freely, point by point
 STRANGE = 35.0  # nats to say that something was drawn that has no meaning here

@@ -4,20 +4,16 @@
  * round, every triangle equilateral and every parallelogram a square, so that a long thin box has as many samples on its
  * short sides as on its long ones, and "how far off" means the same for all. */
 #include "outline.h"
+#include "closed.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { MOST = 7 }; /* sides of a polygon whose corners are told from something round */
 
-typedef struct {
-    double mean[2];
-    double to[4];   /* normal = to * (pixel - mean), row major */
-    double back[4]; /* its inverse */
-} Frame;
-
-/* Second moments of the chain taken as a closed curve (the gaps bridged), so that a missing piece moves them little. */
-static Frame normal_frame(const double *xy, int n, double least_axis) {
+/* The frame: of second moments of the chain taken as a closed curve (the gaps bridged), so that a missing piece moves them
+ * little. */
+static void normal_frame(const double *xy, int n, double least_axis, Closed *out) {
     double w = 0, m[2] = {0, 0};
     Moments t;
     for (int pass = 0; pass < 2; pass++) { /* the mean first: moments about it keep their digits */
@@ -39,8 +35,9 @@ static Frame normal_frame(const double *xy, int n, double least_axis) {
     double p = sqrt(2 * fmax(mid + spread, 0)), q = sqrt(2 * fmax(mid - spread, 0)); /* radii of the like ellipse */
     p = fmax(p, least_axis);
     q = fmax(q, least_axis);
-    Frame f = {{m[0], m[1]}, {c / p, sn / p, -sn / q, c / q}, {c * p, -sn * q, sn * p, c * q}};
-    return f;
+    memcpy(out->mean, m, sizeof m);
+    memcpy(out->to, (double[]){c / p, sn / p, -sn / q, c / q}, sizeof out->to);
+    memcpy(out->back, (double[]){c * p, -sn * q, sn * p, c * q}, sizeof out->back);
 }
 
 static const double LONG = 1.6; /* outlines longer than this many times their width are measured in two ways */
@@ -138,19 +135,20 @@ static double gap_after(const double *z, const int32_t *part_end, int parts, int
     return sqrt(fmin(g2, nearest2(z, last, next, stop - 1, 1, reach)));
 }
 
-/* The ellipse, in the frame, and the circle, in pixels: out as conic (5) and cost, centre (2), radius and cost. */
-static void fit_rounds(const Runs *r, const Frame *f, const Ink *ink, double out[10]) {
-    double x[SAMPLES], y[SAMPLES], conic[5], scale = sqrt(fabs(f->back[0] * f->back[3] - f->back[1] * f->back[2]));
-    double again = retraced(ink, 2 * PI);
-    out[5] = misfit(fit_round(r->x, r->y, ink->factor, ink->cap2, 0, out), ink->observations) + again;
+/* The conic, in the frame, and the circle, in pixels, each with the nats to say the ink, given it. */
+static void fit_rounds(const Runs *r, const Ink *ink, Closed *out) {
+    const double *back = out->back, scale = sqrt(fabs(back[0] * back[3] - back[1] * back[2]));
+    double x[SAMPLES], y[SAMPLES], conic[5], again = retraced(ink, 2 * PI);
+    double square = fit_round(r->x, r->y, ink->factor, ink->cap2, 0, out->conic);
+    out->conic_cost = misfit(square, ink->observations) + again;
     for (int i = 0; i < SAMPLES; i++) {
-        x[i] = (f->back[0] * r->x[i] + f->back[1] * r->y[i]) / scale;
-        y[i] = (f->back[2] * r->x[i] + f->back[3] * r->y[i]) / scale;
+        x[i] = (back[0] * r->x[i] + back[1] * r->y[i]) / scale;
+        y[i] = (back[2] * r->x[i] + back[3] * r->y[i]) / scale;
     }
-    out[9] = misfit(fit_round(x, y, ink->factor, ink->cap2, 1, conic), ink->observations) + again;
-    out[6] = f->mean[0] + scale * conic[2] / 2;
-    out[7] = f->mean[1] + scale * conic[3] / 2;
-    out[8] = scale * sqrt(fmax(conic[4] + conic[2] * conic[2] / 4 + conic[3] * conic[3] / 4, 0));
+    out->circle_cost = misfit(fit_round(x, y, ink->factor, ink->cap2, 1, conic), ink->observations) + again;
+    out->circle[0] = out->mean[0] + scale * conic[2] / 2;
+    out->circle[1] = out->mean[1] + scale * conic[3] / 2;
+    out->circle[2] = scale * sqrt(fmax(conic[4] + conic[2] * conic[2] / 4 + conic[3] * conic[3] / 4, 0));
 }
 
 /* How much of the ink's turning is at the corners of its k-gon: 1 where sides are straight, 0 where it turns evenly. At a
@@ -220,18 +218,29 @@ static double find_lifts(const double *z, const int32_t *part_end, int parts, do
     return gaps;
 }
 
-/* The readings of a closed chain of ink, in its frame where not said otherwise. */
-typedef struct {
-    double frame[10]; /* mean (2), to (4), back (4) */
-    double length[2]; /* of the ink and of the gaps */
-    double round[10]; /* as of fit_rounds */
-    double residual[SIDES + 1]; /* mean squared distance of the best k-gon */
-    double cost[SIDES + 1]; /* nats to say the ink, given it, with its bowed sides, flat corners and short sides */
-    double lacks[SIDES + 1]; /* nats for what of it nobody drew */
-    double vertices[SIDES + 1][2 * SIDES]; /* [pixels] */
-    double rectangle[9]; /* what the nearest adds to residual[4], infinite for none, and its corners [pixels] */
-    double turned[SIDES + 1]; /* how much of the ink's turning is at the corners of the k-gon, of up to MOST sides */
-} Closed;
+/* The ellipse that a conic in the frame is, if it may have been meant. */
+static void as_ellipse(Closed *out) {
+    double a = out->conic[0], b = out->conic[1], c = out->conic[2], d = out->conic[3], e = out->conic[4];
+    out->is_ellipse = 0;
+    memset(out->middle, 0, sizeof out->middle);
+    memset(out->axes, 0, sizeof out->axes);
+    if (a * a + b * b > 0.5) return; /* in this frame whatever is round is nearly a circle */
+    /* about its centre (u, v) the conic is zᵀ M z = level, M = [[1 - a, -b], [-b, 1 + a]] */
+    double det = 1 - a * a - b * b;
+    double u = (c * (1 + a) + d * b) / (2 * det), v = (c * b + d * (1 - a)) / (2 * det);
+    double level = e + (c * u + d * v) / 2;
+    if (!(level > 0.2 && level < 5)) return;
+    /* half axes: z = sqrt(level) M^-1/2 (unit vector), then to pixels; M's inverse's root by Cayley and Hamilton */
+    const double *back = out->back, root = sqrt(det), f = sqrt(level / (det * (2 + 2 * root)));
+    const double m00 = f * (1 + a + root), m01 = f * b, m11 = f * (1 - a + root);
+    out->is_ellipse = 1;
+    out->middle[0] = out->mean[0] + (back[0] * u + back[1] * v);
+    out->middle[1] = out->mean[1] + (back[2] * u + back[3] * v);
+    out->axes[0] = back[0] * m00 + back[1] * m01;
+    out->axes[1] = back[0] * m01 + back[1] * m11;
+    out->axes[2] = back[2] * m00 + back[3] * m01;
+    out->axes[3] = back[2] * m01 + back[3] * m11;
+}
 
 /* Fit the readings of a closed chain of ink.
  *
@@ -247,37 +256,38 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
                         double observations, double side, double hopeless, double undrawn, Closed *out,
                         double *scratch) {
     int n = part_end[parts - 1];
-    Frame f = normal_frame(xy, n, least_axis);
-    memcpy(out->frame, &f, sizeof f);
+    normal_frame(xy, n, least_axis, out);
+    const double *mean = out->mean, *to = out->to, *back = out->back;
     double *z = scratch; /* (n, 2): the chain in the frame */
     for (int i = 0; i < n; i++) {
-        double dx = xy[2 * i] - f.mean[0], dy = xy[2 * i + 1] - f.mean[1];
-        z[2 * i] = f.to[0] * dx + f.to[1] * dy;
-        z[2 * i + 1] = f.to[2] * dx + f.to[3] * dy;
+        double dx = xy[2 * i] - mean[0], dy = xy[2 * i + 1] - mean[1];
+        z[2 * i] = to[0] * dx + to[1] * dy;
+        z[2 * i + 1] = to[2] * dx + to[3] * dy;
     }
     Runs r, longer;
     r.n = SAMPLES;
-    double *length = out->length;
-    length[0] = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
+    out->ink = sample_parts(z, part_end, parts, r.x, r.y, SAMPLES);
     Lift *lifts = (Lift *)(scratch + 2 * n);
-    length[1] = find_lifts(z, part_end, parts, length[0], lifts);
-    double factor[SAMPLES];
-    own_scale(z, part_end, parts, length[0], factor);
+    out->gap = find_lifts(z, part_end, parts, out->ink, lifts);
+    double factor[2 * SAMPLES];
+    own_scale(z, part_end, parts, out->ink, factor);
+    memcpy(factor + SAMPLES, factor, SAMPLES * sizeof *factor);
     Ink ink = {.factor = factor,
                .cap2 = cap * cap,
-               .length = length[0],
+               .length = out->ink,
                .observations = observations,
                .side = side,
                .hopeless = hopeless,
                .lifts = lifts,
                .lift_count = parts,
-               .gaps = length[1],
-               .undrawn = undrawn * observations / fmax(length[0], 1e-9)};
-    fit_rounds(&r, &f, &ink, out->round);
-    ink.round = fmin(out->round[5], out->round[9]);
+               .gaps = out->gap,
+               .undrawn = undrawn * observations / fmax(out->ink, 1e-9)};
+    fit_rounds(&r, &ink, out);
+    as_ellipse(out);
+    ink.round = fmin(out->conic_cost, out->circle_cost);
 
     Polygon found[SIDES + 1];
-    double p = hypot(f.back[0], f.back[2]), q = hypot(f.back[1], f.back[3]);
+    double p = hypot(back[0], back[2]), q = hypot(back[1], back[3]);
     best_polygons(&ink, &r, &longer, p > LONG * q ? sqrt(sqrt(p / q)) : 1, found);
     for (int k = 0; k <= SIDES; k++) {
         double *v = out->vertices[k], cost = found[k].cost - found[k].undrawn;
@@ -288,15 +298,14 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         if (!isfinite(cost)) continue;
         polygon_corners(found + k, v);
         if (k <= MOST) {
-            out->cost[k] += blunted(&r, &ink, v, k, found[k].square, length[0] / n);
+            out->cost[k] += blunted(&r, &ink, v, k, found[k].square, out->ink / n);
             out->turned[k] = turning(&r, v, k);
         }
         for (double *c = v; c < v + 2 * k; c += 2) {
             double x = c[0], y = c[1];
-            c[0] = f.mean[0] + f.back[0] * x + f.back[1] * y;
-            c[1] = f.mean[1] + f.back[2] * x + f.back[3] * y;
+            c[0] = mean[0] + back[0] * x + back[1] * y;
+            c[1] = mean[1] + back[2] * x + back[3] * y;
         }
     }
-    double *box = out->rectangle;
-    box[0] = isfinite(out->cost[4]) ? nearest_rectangle(out->vertices[4], f.to, box + 1) : INFINITY;
+    out->extra = isfinite(out->cost[4]) ? nearest_rectangle(out->vertices[4], to, out->rectangle) : INFINITY;
 }

@@ -18,7 +18,7 @@ typedef struct {
 
 /* A closed chain of ink in its frame, and how its distances from a reading count. */
 typedef struct {
-    const double *factor; /* of each sample, by its part's own size */
+    const double *factor; /* of each sample, by its part's own size; twice over, as of Runs */
     double cap2; /* squared distances count up to this */
     double length; /* of the ink */
     double observations; /* independent ones, that it is worth */

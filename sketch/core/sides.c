@@ -124,7 +124,8 @@ static double undrawn(const Ink *ink, Polygon *p, const double *at, const double
  * length beyond at a quarter. */
 static void judge(const Ink *ink, Polygon *p) {
     const Runs *r = p->runs;
-    const double *x = r->x + p->start, *y = r->y + p->start; /* the samples are there twice: none is beyond the end */
+    /* the samples are there twice: none is beyond the end */
+    const double *x = r->x + p->start, *y = r->y + p->start, *factor = ink->factor + p->start, cap2 = ink->cap2;
     int k = p->k;
     Polygon drawn = *p; /* the drawn corners are the ends of the bows */
     drawn.stretch[0] = drawn.stretch[1] = 1;
@@ -133,7 +134,7 @@ static void judge(const Ink *ink, Polygon *p) {
         drawn.side[q].x -= off * p->side[q].dy;
         drawn.side[q].y += off * p->side[q].dx;
     }
-    double at[2 * SIDES], share[SIDES], length_of[SIDES], sum = 0, around = 0, area = 0, bows = 0;
+    double at[2 * SIDES], share[SIDES], length_of[SIDES], off[SAMPLES], sum = 0, around = 0, area = 0, bows = 0;
     polygon_corners(&drawn, at);
     for (int q = 0; q < k; q++) {
         const double *a = at + 2 * q, *b = at + 2 * ((q + 1) % k);
@@ -148,20 +149,22 @@ static void judge(const Ink *ink, Polygon *p) {
         const double *a = at + 2 * q, *b = at + 2 * ((q + 1) % k);
         double dx = b[0] - a[0], dy = b[1] - a[1], l = length(dx, dy), bow = p->side[q].bow;
         double per = l > 0 ? 1 / l : 0, ux = dx * per, uy = dy * per;
-        for (int i = p->cut[q]; i < p->cut[q + 1]; i++) {
+        for (int i = p->cut[q]; i < p->cut[q + 1]; i++) { /* without branches: a compiler takes several at a time */
             double px = x[i] - a[0], py = y[i] - a[1];
-            double t = px * ux + py * uy, h = l > 0 ? py * ux - px * uy : length(px, py);
-            double over = t < 0 ? -t : t > l ? t - l : 0, u = 2 * t * per - 1;
-            h += over == 0 && l > 0 ? bow * (1 - u * u) : 0;
+            double t = px * ux + py * uy, h = py * ux - px * uy, back = -t, beyond = t - l, u = 2 * t * per - 1;
+            double over = beyond > 0 ? beyond : 0, bowed = h + bow * (1 - u * u);
+            over = back > 0 ? back : over;
+            h = over > 0 ? h : bowed;
             double off2 = h * h + 0.0625 * over * over;
-            int sample = p->start + i < r->n ? p->start + i : p->start + i - r->n;
-            sum += (off2 < ink->cap2 ? off2 : ink->cap2) * ink->factor[sample];
+            off2 = l > 0 ? off2 : px * px + py * py;
+            off[i] = (off2 < cap2 ? off2 : cap2) * factor[i];
         }
         double usual = (share[q] - bows) / BOW, most = share[q] / BENT;
         bent *= 1 + 0.25 * usual * usual;
         odd += 0.5 * most * most +
                odd_side(at + 2 * ((q + k - 1) % k), a, b, at + 2 * ((q + 2) % k), area, length_of[q] * per_around, k);
     }
+    for (int i = 0; i < r->n; i++) sum += off[i];
     /* The frame makes a straight wall as wide as it is long; one that turns a corner stays thin in it. */
     double thick = fabs(area) * per_around / THICK;
     p->square = sum / (r->n * fmin(thick * thick, 1));

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from pages import box, measured, ngon, page, read
 
-from sketch.kernel import depth, fit_closed, measure
+from sketch.kernel import depth, measure
+from sketch.shapes.closed import fit_closed
 from sketch.synthetic import HANDS, outline
 
 

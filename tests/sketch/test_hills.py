@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from pages import box, page
 
 from sketch import recognize
-from sketch.kernel import depth, fit_closed
+from sketch.kernel import depth
+from sketch.shapes.closed import fit_closed
 from sketch.synthetic import HANDS, Hand, curve, outline
 
 Array = NDArray[np.float64]

@@ -16,7 +16,6 @@ from sketch.kernel import (
     course_around,
     depth,
     depths,
-    fit_closed,
     gap,
     lent,
     measure,
@@ -25,6 +24,7 @@ from sketch.kernel import (
 )
 from sketch.page.loose import LooseEnds
 from sketch.page.pieces import Page
+from sketch.shapes.closed import fit_closed
 
 Array = NDArray[np.float64]
 
