@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import math
 from collections.abc import Mapping, Sequence
-from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -16,17 +15,20 @@ from sketch.typing import Array, Point
 
 __all__ = [
     "SIDES",
-    "ArrowFit",
+    "Mark",
+    "Places",
     "Point",
     "Shaft",
     "Strokes",
     "beside",
     "course",
     "course_around",
+    "crossing",
     "cuts",
     "depth",
     "depths",
     "fit_arrows",
+    "fit_cross",
     "gap",
     "is_simple",
     "joined",
@@ -34,19 +36,22 @@ __all__ = [
     "measure",
     "off_outline",
     "place",
+    "places",
     "ring",
     "touch",
-    "within",
     "words",
 ]
 
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
 COURSE = 32  # as in core/course.c
+ARROW_STROKES = 3  # of an arrow, at most: MOST_STROKES of core/arrow.c
 LENT = 1000  # points of a side that is lent, at most: MOST_STEPS of core/lend.c
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
-_arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _pointer, _pointer, _double, _pointer, _pointer)(
+_crossing = ctypes.CFUNCTYPE(_int, *[_pointer] * 5)(("ink_crossing", _lib))
+_cross = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _double, _pointer)(("ink_cross", _lib))
+_arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, *[_pointer] * 2, _double, *[_pointer] * 2)(
     ("ink_arrows", _lib)
 )
 _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
@@ -68,7 +73,6 @@ _lend = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, *[_pointer] * 2, _double, 
 )
 _ring = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer, _pointer)(("ink_ring", _lib))
 _touch = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _int, *[_double] * 4)(("ink_touch", _lib))
-_within = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _double)(("ink_within", _lib))
 _gap = ctypes.CFUNCTYPE(_double, _pointer, _int, _pointer, _int, _pointer)(("ink_gap", _lib))
 _depth = ctypes.CFUNCTYPE(_double, _double, _double, _pointer, _int)(("ink_depth", _lib))
 _depths = ctypes.CFUNCTYPE(None, _pointer, _int, _pointer, _int, _pointer)(("ink_depths", _lib))
@@ -107,23 +111,35 @@ class Shaft(NamedTuple):
     toward: Point
 
 
-class ArrowFit(NamedTuple):
-    """An arrow on some strokes (see core/arrow.c).
+class Places(NamedTuple):
+    """Where the library finds what is known of a page's strokes: as of `Strokes`, and of each a struct Facts of
+    core/facts.h."""
 
-    names: the shaft's stroke, and those of the head.  tail: [pixels].  head: its tip and its barbs' ends [pixels].
-    lengths, ink: of the shaft and of each barb, and of the ink nearest to each [pixels].  unlike: nats of how
-    unlike a head its head is.
-    bare: mean squared distance of the arrow from the ink [pixels²].  off: of each stroke from the arrow.
+    samples: int
+    measure: int
+    residual: int
+    vertices: int
+    facts: int
+
+
+class Mark(NamedTuple):
+    """A cross or an arrow on some strokes, as a reading.
+
+    names: the strokes; of an arrow its shaft's first.  cost: nats; rough: of these, to say the ink.
+    figure: a closed polygon along all that may be drawn of it [pixels], (n, 2).
     """
 
     names: tuple[int, ...]
-    tail: Point
-    head: tuple[Point, Point, Point]
-    lengths: list[float]
-    unlike: float
-    ink: list[float]
-    bare: float
-    off: list[float]
+    cost: float
+    rough: float
+    figure: Array
+
+
+def places(strokes: Strokes, facts: Array) -> Places:
+    """Where they are."""
+    return Places(
+        *map(address, (strokes.samples, strokes.measure, strokes.residual, strokes.vertices, facts))
+    )
 
 
 def measure(strokes: list[Array]) -> Strokes:
@@ -150,39 +166,74 @@ def joined(a: Strokes, b: Strokes) -> Strokes:
     return Strokes(a.points[:0], a.ends[:0], rows, samples, residual, vertices)
 
 
-def fit_arrows(
-    strokes: Strokes, shafts: Sequence[Shaft], free: Sequence[float], slack: float
-) -> list[ArrowFit]:
+def crossing(bars: Array) -> tuple[float, float] | None:
+    """Nats of how far from their middles two bars cross, given their ends, (4, 2), and of how unlike they are; None for
+    no X (see core/cross.c)."""
+    at, odd = address(bars), (_double * 2)()
+    if not _crossing(at, at + 16, at + 32, at + 48, odd):
+        return None
+    return odd[0], odd[1]
+
+
+def fit_cross(known: Places, names: tuple[int, ...], most: float) -> Mark | None:
+    """An X of one stroke or two; None where there is none in `most` nats (see core/cross.c)."""
+    out = np.empty((10, 2))
+    which, at = (_int * len(names))(*names), address(out)
+    if not _cross(known.samples, known.residual, known.vertices, known.facts, which, len(names), most, at):
+        return None
+    cost, rough = out[0].tolist()
+    return Mark(names, cost, rough, out[1:])
+
+
+def fit_arrows(known: Places, shafts: Sequence[Shaft], worse: float) -> list[Mark]:
     """The arrows of some shafts and their heads.
 
-    free: nats to say each of their strokes freely, one shaft after another.  slack: nats above those of its
-    strokes that an arrow's head may be unlike one.
+    worse: nats more than their ink takes freely that arrows are looked for up to.
     """
-    names, ends = [i for s in shafts for i in s.names], list(accumulate(len(s.names) for s in shafts))
-    which = np.array([*names, *ends, *(n for s in shafts for n in s.heads)], dtype=np.int32)
-    given = np.array([*free, *(v for s in shafts for point in s[2:] for v in point)])
-    most = sum(len(s.names) ** 2 for s in shafts)
-    groups, fits = np.empty((most, 4), dtype=np.int32), np.empty((most, 19))
-    at, values = address(which), address(given)
-    count = _arrows(
-        address(strokes.samples),
-        address(strokes.measure),
+    which: list[int] = []
+    ends: list[int] = []
+    heads: list[int] = []
+    given: list[float] = []
+    most = 0
+    for names, head, tail, toward in shafts:
+        which += names
+        ends.append(len(which))
+        heads += head
+        given += tail + toward
+        most += len(names) ** 2
+    count, whole = len(ends), len(which)
+    numbers = (_int * (whole + 3 * count + ARROW_STROKES * most))(*which, *ends, *heads)
+    out = np.empty(13 * most)
+    at = ctypes.addressof(numbers)
+    groups = at + 4 * (whole + 3 * count)
+    found = _arrows(
+        known.samples,
+        known.measure,
+        known.facts,
         at,
-        values,
-        at + 4 * len(names),
-        len(shafts),
-        at + 4 * (len(names) + len(ends)),
-        values + 8 * len(names),
-        slack,
-        address(fits),
-        address(groups),
+        at + 4 * whole,
+        count,
+        at + 4 * (whole + count),
+        (_double * len(given))(*given),
+        worse,
+        address(out),
+        groups,
     )
-    found = []
-    for (g, *group), v in zip(groups[:count].tolist(), fits[:count].tolist(), strict=True):
-        own = tuple(i for i in group if i >= 0)
-        head = (v[0], v[1]), (v[2], v[3]), (v[4], v[5])
-        found.append(ArrowFit(own, shafts[g].tail, head, v[6:9], v[11], v[12:15], v[15], v[16:]))
-    return found
+    if not found:
+        return []
+    arrows = out[: 13 * found].reshape(found, 13).copy()
+    figures = arrows[:, 1:].reshape(found, 6, 2).copy()
+    first = whole + 3 * count
+    its = numbers[first : first + ARROW_STROKES * found]
+    return [
+        Mark(
+            tuple(i for i in its[ARROW_STROKES * k : ARROW_STROKES * (k + 1)] if i >= 0),
+            cost,
+            0.0,
+            figures[k],
+        )
+        for k, cost in enumerate(arrows[:, 0].tolist())
+    ]
 
 
 def beside(boxes: Array, bodies: Array) -> list[list[int]]:
@@ -305,11 +356,6 @@ def gap(one: Array, other: Array) -> tuple[float, Point]:
 def touch(one: Array, other: Array, at: Point, reach: float, near: float) -> bool:
     """Whether two closed outlines, (n, 2), overlap or come nearer than `near` within `reach` of a point [pixels]."""
     return bool(_touch(address(one), len(one), address(other), len(other), *at, reach, near))
-
-
-def within(strokes: Strokes, name: int, triangle: Array, reach: float) -> bool:
-    """Whether a stroke is within a triangle, (3, 2), or beyond its sides by no more than `reach` [pixels]."""
-    return bool(_within(address(strokes.samples), name, address(triangle), reach))
 
 
 def words(

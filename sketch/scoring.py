@@ -22,15 +22,18 @@ from sketch.typing import Array
 if TYPE_CHECKING:
     from sketch.page.pieces import Piece
 
-__all__ = ["Fitted", "meaningless", "misfit", "misfit_of", "unread"]
+__all__ = ["Fitted", "misfit", "misfit_of", "unread"]
 
 # spread of ink about what was meant, as a share of its size; of outlines it is less
 TREMOR = 0.05  # as in core/scoring.h
-SLOPPY = 0.1  # nobody's ink is off by much more than this, as a share of the radius; as in core/outline.h and core/scoring.h
-PARAMETER = 4.0  # nats to say one parameter to that precision: about ln(page / tremor)
-FREE = 4.0  # nats an observation to say ink freely, point by point
-STRANGE = 35.0  # nats to say that something was drawn that has no meaning here
-LINE = 11.0  # observations in a straight line: what is less, a tap of the pen, is less of a surprise
+# nobody's ink is off by much more than this, as a share of the radius
+SLOPPY = 0.1  # as in core/outline.h and core/scoring.h
+# nats to say one parameter to that precision: about ln(page / tremor)
+PARAMETER = 4.0  # as in core/scoring.h
+FREE = 4.0  # nats an observation to say ink freely, point by point; as in core/scoring.h
+STRANGE = 35.0  # nats to say that something was drawn that has no meaning here; as in core/scoring.h
+# observations in a straight line: what is less, a tap of the pen, is less of a surprise
+LINE = 11.0  # as in core/scoring.h
 
 
 @dataclass(eq=False)  # frozen, it would take four times as long to make, and very many are
@@ -102,11 +105,6 @@ def unread(piece: Piece) -> float:
 def strange(count: float) -> float:
     """Nats to say that so many observations were drawn that have no meaning."""
     return STRANGE * min(count / LINE, 1.0)
-
-
-def meaningless(count: float) -> float:
-    """Nats to say so many observations freely, of ink that has no meaning in something that has one."""
-    return strange(count) + FREE * count
 
 
 def misfit(mean_square: float, count: float) -> float:

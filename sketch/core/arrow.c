@@ -1,5 +1,5 @@
 /* An arrow's reading: a shaft from its tail to the tip, and two barbs from the tip, fitted to all the ink of some strokes. */
-#include "fit.h"
+#include "mark.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,6 +15,15 @@ static const double SIZE = 0.45, SIZES = 0.4; /* of the shaft, and of its logari
 static const double BACK = 0.7,
                     BEYOND = 1.3; /* of a barb: how near to the tip ink comes back, how far it may go before */
 static const double ANGLE = 0.6, ANGLES = 0.25; /* [rad] */
+
+static const double RARE_ARROW = 2.0; /* nats that an arrow is rarer than an outline: there is one on a page, or none */
+static const double SHAFT = 0.55; /* of the shaft: what the distance of an arrow's ink from it is measured in */
+/* of the shaft: what the distance of an arrow from the nearest ink is measured in: a barb is drawn */
+static const double GAPS = 0.5;
+/* times that a shaft and the barbs of an arrow are drawn, at most: the pen comes back along a barb */
+static const double OFTEN[] = {1.3, 2.0, 2.0};
+static const double LOOP = 0.12; /* of its length: how far apart the ends of a loop are, at most */
+static const double THICK = 0.2; /* of its extent: half the thickness of a loop that is no barb drawn forth and back */
 
 typedef struct {
     double head[6]; /* the tip and the barbs' ends [pixels] */
@@ -129,33 +138,80 @@ static int fit_arrow(const double *samples, const double *length, const int32_t 
     return 1;
 }
 
+int is_within_head(const double *samples, const Facts *piece, int32_t name, const double head[6]) {
+    if (piece->gap < LOOP * piece->length && piece->scale > THICK * piece->extent) return 0;
+    const double left = hypot(head[2] - head[0], head[3] - head[1]),
+                 right = hypot(head[4] - head[0], head[5] - head[1]);
+    return ink_within(samples, name, head, STRAY * (left + right));
+}
+
+/* Nats to say the ink of an arrow's `count` strokes; infinite where they are more than `worse` above what it takes freely. */
+static double price(const Arrow *arrow, const double *samples, const Facts *facts, const int32_t *names, int count,
+                    double worse) {
+    const double shaft = arrow->lengths[0], *ink = arrow->ink, model = RARE_ARROW + 4 * PARAMETER;
+    double observations = 0, unread = 0, wrong = 0, off = 0;
+    for (int k = 0; k < count; k++) {
+        observations += facts[names[k]].observations;
+        unread += facts[names[k]].unread;
+    }
+    /* what lacks, and what goes over the arrow more often than a hand does, takes as much to say as free ink */
+    for (int e = 0; e < 3; e++)
+        wrong += fmax(fmax(arrow->lengths[e] - ink[e], ink[e] - OFTEN[e] * arrow->lengths[e]), 0);
+    const double gaps = GAPS * shaft, again = FREE * wrong / (ink[0] + ink[1] + ink[2]) * observations +
+                                              misfit(arrow->bare / (gaps * gaps), observations);
+    const double said = model + again + arrow->unlike, most = unread + worse;
+    for (int k = 0; k < count; k++) {
+        const Facts *piece = facts + names[k];
+        const int small = piece->extent < SMALL * shaft;
+        /* an arrow whose ends meet is no loop, nor a barb that was drawn forth and back */
+        const double scale = count == 1 ? SHAFT * shaft : small ? piece->extent / 2 : piece->scale;
+        const double cost = misfit_of(piece, arrow->off[k], scale), freely = HEAD * piece->observations;
+        if (said + off + (small ? fmin(cost, freely) : cost) > most) return INFINITY;
+        off += cost > freely && small && is_within_head(samples, piece, names[k], arrow->head) ? freely : cost;
+    }
+    const double cost = model + off + again + arrow->unlike;
+    return cost > most ? INFINITY : cost;
+}
+
+/* An arrow as a reading. */
+typedef struct {
+    double cost; /* nats */
+    double figure[6][2]; /* a closed polygon along it: tail, tip, a barb's end, tip, the other's, tip [pixels] */
+} ReadArrow;
+
 /* Arrows of shafts with their heads.
  *
  * samples: of every stroke of the page, (strokes, SAMPLES, 2) [pixels]; length: of each stroke, a row of `measure` apart
- * [pixels].
- * names: of each shaft its stroke, then those that may be its head, one shaft after another; free: the nats to say each of
- * them freely; ends: where each of `count` shafts ends; heads: (count, 2): how many strokes may make the head, at least
- * and at most, up to two; given: (count, 4): the shaft's tail and a point on the way to the tip.
- * slack: the most nats that an arrow's head may be unlike one, above what its strokes take freely.
- * Out: fits: arrows with a head, in order; groups: (fits, 1 + MOST_STROKES) of each the shaft's number and the strokes, -1
- * for none. There is room for all combinations. Returns how many there are. */
-INK_API int32_t ink_arrows(const double *samples, const double *length, const int32_t *names, const double *free,
-                           const int32_t *ends, int32_t count, const int32_t *heads, const double *given, double slack,
-                           Arrow *fits, int32_t *groups) {
+ * [pixels]; facts: of each.
+ * names: of each shaft its stroke, then those that may be its head, one shaft after another; ends: where each of `count`
+ * shafts ends; heads: (count, 2): how many strokes may make the head, at least and at most, up to two; given: (count, 4): the
+ * shaft's tail and a point on the way to the tip.
+ * worse: nats more than their ink takes freely that arrows are looked for up to.
+ * Out: arrows, in order; groups: (arrows, MOST_STROKES) the strokes of each, the shaft's first, -1 for none. There is room
+ * for all combinations. Returns how many there are. */
+INK_API int32_t ink_arrows(const double *samples, const double *length, const Facts *facts, const int32_t *names,
+                           const int32_t *ends, int32_t count, const int32_t *heads, const double *given, double worse,
+                           ReadArrow *arrows, int32_t *groups) {
+    const double slack = worse - (RARE_ARROW + 4 * PARAMETER);
     int found = 0;
     for (int g = 0, first = 0; g < count; first = ends[g++]) {
         const int32_t *name = names + first;
-        const double *its = free + first;
+        const double *tail = given + 4 * g;
         int most = ends[g] - first;
         for (int size = heads[2 * g]; size <= heads[2 * g + 1]; size++)
             for (int a = 1; a < (size > 0 ? most : 2); a++)
                 for (int b = a + 1; b < (size > 1 ? most : a + 2); b++) {
-                    const int32_t group[] = {g, name[0], size > 0 ? name[a] : -1, size > 1 ? name[b] : -1};
-                    double limit = slack + its[0] + (size > 0 ? its[a] : 0) + (size > 1 ? its[b] : 0);
-                    if (!fit_arrow(samples, length, group + 1, size + 1, given + 4 * g, given + 4 * g + 2, limit,
-                                   fits + found))
-                        continue;
-                    memcpy(groups + 4 * found++, group, sizeof group);
+                    const int32_t group[] = {name[0], size > 0 ? name[a] : -1, size > 1 ? name[b] : -1};
+                    double limit = slack;
+                    for (int k = 0; k <= size; k++) limit += facts[group[k]].unread;
+                    Arrow fit;
+                    if (!fit_arrow(samples, length, group, size + 1, tail, tail + 2, limit, &fit)) continue;
+                    ReadArrow *read = arrows + found;
+                    read->cost = price(&fit, samples, facts, group, size + 1, worse);
+                    if (!isfinite(read->cost)) continue;
+                    const double *along[] = {tail, fit.head, fit.head + 2, fit.head, fit.head + 4, fit.head};
+                    for (int k = 0; k < 6; k++) memcpy(read->figure[k], along[k], sizeof read->figure[k]);
+                    memcpy(groups + MOST_STROKES * found++, group, sizeof group);
                 }
     }
     return found;

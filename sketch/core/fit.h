@@ -7,6 +7,8 @@
 
 #include "api.h"
 
+static const double RETRACE = 1.0; /* nats an observation of ink that was drawn already */
+
 enum {
     SAMPLES = 48, /* of a piece of ink: a rectangle's side still has a dozen */
     SIDES = 12    /* the most sides that are told apart; beyond, an outline is round or free */
@@ -85,5 +87,12 @@ int ink_apart(const int32_t *rivals, const int32_t *from, int i, int j);
 int again_end(const double *p, int first, int step, int n, double total, double extent);
 
 double segment_distance2(double px, double py, const double a[2], const double b[2]);
+
+/* As said where they are. */
+INK_API int32_t ink_along(int32_t pieces, const double *boxes, const double *samples, const double *sizes,
+                          const double *outline, int32_t n, double reach, double box[4], int32_t *found);
+INK_API void ink_off_outline(const double *samples, const int32_t *names, int32_t count, const double *outline,
+                             int32_t n, double *off);
+INK_API int32_t ink_within(const double *samples, int32_t name, const double *triangle, double reach);
 
 #endif

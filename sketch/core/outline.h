@@ -7,7 +7,6 @@
 static const double PI = 3.14159265358979323846;
 static const double TREMOR = 0.045; /* spread of ink about what was meant, in the frame: a share of the radius */
 static const double SLOPPY = 0.1;   /* nobody's ink is off by much more than this */
-static const double RETRACE = 1.0;  /* nats an observation of ink that was drawn already */
 
 /* Where the pen was lifted on the way around: which sample is the first behind, where the ink ends and goes on, and what is
  * missing of it at least. */

@@ -7,7 +7,7 @@ import ctypes
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.kernel import Strokes
+from sketch.kernel import Places, Strokes
 from sketch.library import address, library
 from sketch.typing import Array, Box, Point
 
@@ -16,9 +16,9 @@ __all__ = ["Boxes", "Near"]
 HEADS = 4  # as in core/heads.c
 
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_along = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 4, _int, _double, _pointer, _pointer)(
-    ("ink_along", library())
-)
+_again = ctypes.CFUNCTYPE(
+    _int, _int, *[_pointer] * 7, _int, _double, _pointer, _int, *[_double] * 2, *[_pointer] * 3
+)(("ink_again", library()))
 _heads = ctypes.CFUNCTYPE(None, _int, *[_pointer] * 5, _int, _pointer, *[_double] * 3, _pointer, _pointer)(
     ("ink_heads", library())
 )
@@ -53,23 +53,39 @@ class Boxes:
 class Near(Boxes):
     """The boxes of all pieces, and their measures."""
 
-    def __init__(self, boxes: Array, strokes: Strokes, sizes: Array, points: NDArray[np.int64]) -> None:
+    def __init__(
+        self,
+        boxes: Array,
+        strokes: Strokes,
+        sizes: Array,
+        points: NDArray[np.int64],
+        places: Places,
+        rivals: tuple[int | None, int | None],
+    ) -> None:
         """sizes: of each: what its distances from other ink are compared with [pixels].  points: of each where they
-        are, and how many."""
+        are, and how many.  places: of the strokes.  rivals: as of `LooseEnds`."""
         super().__init__(boxes)
         self._arrays = strokes, sizes, points  # kept, as the library is told where they are
-        self._box, self._tips = np.empty(4), np.empty((2, 2))
-        self._samples, self._measure = address(strokes.samples), address(strokes.measure)
+        self._box, self._tips, self._costs = (_double * 4)(), np.empty((2, 2)), np.empty(len(boxes))
+        self._places, self._rivals, self._measure = places, rivals, places.measure
         self._sizes, self._points = address(sizes), address(points)
-        self._into_box, self._into_tips = address(self._box), address(self._tips)
+        self._into_tips, self._into_costs = address(self._tips), address(self._costs)
 
-    def along(self, outline: Array, reach: float) -> tuple[list[int], Box]:
-        """Those in an outline's box, widened by `reach` [pixels], whose ink may run along it, and that box (see
-        core/along.c)."""
-        of = len(self.boxes), self._at, self._samples, self._sizes
-        count = _along(*of, address(outline), len(outline), reach, self._into_box, self._into)
-        x0, y0, x1, y1 = self._box.tolist()
-        return self._first(count), (x0, y0, x1, y1)
+    def again(
+        self, outline: Array, reach: float, names: tuple[int, ...], scale: float, shaft: float
+    ) -> tuple[dict[int, float], Box]:
+        """Those in an outline's box, widened by `reach` [pixels], that are drawn along it once more, with the nats to
+        say each, and that box (see core/again.c).
+
+        names: of which it is.  scale: of a body, or 0.  shaft: of an arrow, or 0 [pixels].
+        """
+        which = (_int * len(names))(*names)
+        of = len(self.boxes), self._at, self._places.samples, self._sizes, self._places.facts, *self._rivals
+        line = address(outline), len(outline), reach, which, len(names), scale, shaft
+        count = _again(*of, *line, self._box, self._into, self._into_costs)
+        x0, y0, x1, y1 = self._box
+        found = zip(self._first(count), self._costs[:count].tolist(), strict=True) if count else ()
+        return dict(found), (x0, y0, x1, y1)
 
     def reaching(self, box: Box, reach: float) -> list[int]:
         """Those that may come within `reach` of two places, given the box around these [pixels] (see core/near.c)."""
@@ -77,17 +93,16 @@ class Near(Boxes):
 
     def heads(
         self,
-        rivals: tuple[int | None, int | None],
         shaft: int,
         tips: tuple[Point, Point],
         limits: tuple[float, float, float],
     ) -> tuple[list[int], list[int]]:
         """Those that may be a shaft's head, for each of two tips, the nearest first (see core/heads.c).
 
-        rivals: as of `LooseEnds`.  limits: reach, span and size [pixels].
+        limits: reach, span and size [pixels].
         """
         self._tips[:] = tips
         of = len(self.boxes), self._at, self._measure, self._points
-        _heads(*of, *rivals, shaft, self._into_tips, *limits, self._into, self._into + 8 * HEADS)
+        _heads(*of, *self._rivals, shaft, self._into_tips, *limits, self._into, self._into + 8 * HEADS)
         *near, first, second = self._first(2 * HEADS + 2)
         return near[:first], near[HEADS : HEADS + second]

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sketch.kernel import joined, measure
+from sketch.kernel import joined, measure, places
 from sketch.page.loose import Chain, End, LooseEnds
 from sketch.page.near import Near
 from sketch.scoring import unread
@@ -22,6 +22,7 @@ DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it 
 ONCE = 1.2  # of its extent: a straight line that is longer is gone over again; one that is not is 1.15 extents long
 LINE = 0.03  # of its extent: how far across ink is, at most, that goes over one straight line again
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
+FACTS = 6  # numbers of a struct Facts of core/facts.h
 
 
 NOTHING = measure([])
@@ -134,6 +135,7 @@ class Page:
             one reading.  Without any, empty.
         ends: of its pieces, as far as they are loose.
         looked: where it is noted what is asked of the page.
+        places: where the library finds what is known of its strokes.
     """
 
     def __init__(self, canvas: float = 0.0, rivals: Sequence[Set[int]] = ()) -> None:
@@ -148,7 +150,9 @@ class Page:
         self._boxes = np.empty((0, 4))
         self._sizes = np.empty(0)  # of each: what its distances from other ink are compared with [pixels]
         self._points = np.empty((0, 2), dtype=np.int64)  # of each piece where its points are, and how many
-        self._near = Near(self._boxes, self.strokes, self._sizes, self._points)
+        self._facts = np.empty((0, FACTS))  # of each, as of core/facts.h
+        self._fresh: list[int] = []  # those of which these are not known yet
+        self._look()
 
     def add(self, strokes: list[Array], given: Sequence[Array | None] = ()) -> range:
         """Measure further strokes, each (n, 2) in pixels; returns their indices.
@@ -178,8 +182,16 @@ class Page:
                 self._boxes[i], ends[k] = piece.box, piece.ends
                 self._sizes[i] = max(piece.scale, piece.extent / 2)
         self.ends.add(ends, new.measure[:, 0])
-        self._near = Near(self._boxes, self.strokes, self._sizes, self._points)
+        self._facts = np.concatenate([self._facts, np.zeros((count, FACTS))])
+        self._fresh += range(first, first + count)
+        self._look()
         return range(first, first + count)
+
+    def _look(self) -> None:
+        """Find anew where all is: there is other ink."""
+        self.places = places(self.strokes, self._facts)
+        of = self._boxes, self.strokes, self._sizes, self._points
+        self._near = Near(*of, self.places, self.ends.rivals)
 
     def remove(self, index: int) -> None:
         """Take a piece away, which is not loose any more."""
@@ -199,6 +211,11 @@ class Page:
         for i in changed:
             p = self.pieces[i]
             self.pieces[i] = replace(p, observations=_observations(p.length, p.extent, dot))
+        other = [self.pieces[i] for i in {*changed, *self._fresh} if i in self.pieces]
+        self._facts[[p.index for p in other]] = [
+            (p.observations, p.scale, p.extent, p.unread, p.gap, p.length) for p in other
+        ] or np.empty((0, FACTS))
+        self._fresh.clear()
         self.size = self.drawn = self._canvas
         if live:
             boxes = self._boxes[live]
@@ -215,12 +232,18 @@ class Page:
         """Whether a piece shares no ink with some others."""
         return not self.rivals or self.rivals[index].isdisjoint(others)
 
-    def along(self, outline: Array, reach: float) -> list[Piece]:
-        """The pieces in an outline's bounding box, widened by `reach` [pixels], whose ink may run along it; told by
-        a few places of each, where they are many."""
-        found, box = self._near.along(outline, reach)
+    def again(
+        self, outline: Array, reach: float, names: tuple[int, ...], scale: float, shaft: float = 0.0
+    ) -> dict[int, float]:
+        """The pieces that are drawn along an outline once more, with the nats to say each, fewer than it takes freely.
+
+        reach: as far from the outline's box as they are [pixels].  names: the pieces that the outline is of.
+        scale: of a body, which is drawn over no more precisely than it is; 0 for a mark [pixels].
+        shaft: of an arrow its length, else 0 [pixels].
+        """
+        costs, box = self._near.again(outline, reach, names, scale, shaft)
         self.looked.boxes.append(box)
-        return [self.pieces[i] for i in found]
+        return costs
 
     def touching(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:
         """The pieces whose bounding box has a point in this one."""
@@ -240,7 +263,7 @@ class Page:
         """For each of its tips the pieces that may be a shaft's head, the nearest first: those that come within
         `reach` of it, go no further than `span`, and are no larger than `size` [pixels]."""
         self.looked.boxes += [(x - reach, y - reach, x + reach, y + reach) for x, y in tips]
-        return self._near.heads(self.ends.rivals, shaft.index, tips, (reach, span, size))
+        return self._near.heads(shaft.index, tips, (reach, span, size))
 
     def chains(self, start: int) -> list[tuple[float, float, float, Chain]]:
         """As of `LooseEnds.chains`."""

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from sketch.kernel import course_around, off_outline, ring
+from sketch.kernel import course_around, ring
 from sketch.page.loose import Chain
-from sketch.page.pieces import Page, Piece
+from sketch.page.pieces import Page
 from sketch.page.sampling import arced, unevenness
-from sketch.scoring import FREE, PARAMETER, Fitted, misfit
+from sketch.scoring import FREE, PARAMETER, Fitted
 from sketch.shapes.closed import Few, closed_readings, fit_closed
 from sketch.typing import Array
 
-__all__ = ["LEAST_AXIS", "gone_over", "read_borrowing", "read_outline"]
+__all__ = ["LEAST_AXIS", "read_borrowing", "read_outline"]
 
 MOST, MANY = (
     7,
@@ -27,7 +26,7 @@ EVEN_STEPS = 0.06  # of a step: how uneven they usually are along something roun
 CORNERED = 0.12  # of a step: how uneven they usually are around something with corners
 STEPPING = 0.3  # of the logarithm of how uneven steps are: how much it differs from EVEN_STEPS' or CORNERED's
 CHANCE = 3.0  # nats that all corners lie halfway between points, or at them: steps are even then
-RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/outline.h
+RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/fit.h
 SHARED = 10.0  # nats that an outline is rarer of which a side is another's
 GAP = 4.0  # nats for each observation that an outline lacks; as in core/readings.c
 SIDE = 0.18  # of an outline's ink where it is made even: a wider gap may be a short side that nobody drew
@@ -157,17 +156,3 @@ def _stepping(points: list[Array], ellipse: tuple[Array, Array] | None, along: i
         0.5 * (even / STEPPING) ** 2,
         min(0.5 * (cornered / STEPPING) ** 2, CHANCE),
     )
-
-
-def gone_over(page: Page, fitted: Fitted, pieces: Sequence[Piece]) -> list[float]:
-    """Nats to say each of some further pieces of ink, given that it runs along a closed outline that is there already.
-
-    Sides are drawn twice, in pieces that overlap, or gone over once more.
-    """
-    off = off_outline(page.strokes, [p.stroke for p in pieces], fitted.outline)
-    return [
-        PARAMETER
-        + RETRACE * p.observations
-        + misfit(square / min(fitted.scale, max(p.scale, 1e-9)) ** 2, p.observations)
-        for p, square in zip(pieces, off, strict=True)
-    ]

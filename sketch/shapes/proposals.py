@@ -26,7 +26,7 @@ from sketch.scoring import Fitted, misfit_of
 from sketch.search import Part, part
 from sketch.shapes.bars import bars_again, read_bar, read_bar_of_two, read_line, read_line_gone_over
 from sketch.shapes.marks import read_arrows, read_cross, read_cross_over, with_strays
-from sketch.shapes.outlines import LEAST_AXIS, gone_over, read_borrowing, read_outline
+from sketch.shapes.outlines import LEAST_AXIS, read_borrowing, read_outline
 from sketch.typing import Array, Box
 
 __all__ = ["HOPELESS", "Pick", "Proposals", "Proposed", "Row", "proposing"]
@@ -271,7 +271,7 @@ class Proposals:
             for names in crosses(page, p):
                 most = self._said(names) + HOPELESS
                 for cross in fitted((names, "cross"), lambda n=names, m=most: _kept(read_cross(page, n, m))):  # type: ignore[misc]
-                    out += [cross, *with_strays(page, cross, self.free)]
+                    out += [cross, *with_strays(page, cross, self._said(cross.pieces))]
             out += self._arrows(p)
         said = [(c, self._said(c.pieces) - c.cost - MEANT) for c in out]
         likely = [(c, gain) for c, gain in said if gain > -HOPELESS]
@@ -285,7 +285,7 @@ class Proposals:
         """Arrows of which a piece is the shaft, the best of each group."""
         best: dict[tuple[int, ...], Fitted] = {}
         for arrow in read_arrows(self.page, list(shafts(self.page, p)), HOPELESS):
-            for mark in (arrow, *with_strays(self.page, arrow, self.free)):
+            for mark in (arrow, *with_strays(self.page, arrow, self._said(arrow.pieces))):
                 if mark.pieces not in best or mark.cost < best[mark.pieces].cost:
                     best[mark.pieces] = mark
         return list(best.values())
@@ -337,14 +337,8 @@ def _again(page: Page, found: list[Fitted], free: dict[int, float]) -> list[Fitt
     best = min(found, key=lambda f: f.cost)
     if best.cost > sum(free[i] for i in best.pieces):
         return []
-    near = [
-        p
-        for p in page.along(best.outline, ALONG * best.scale)
-        if p.index not in best.pieces and page.apart(p.index, best.pieces)
-    ]
-    said = gone_over(page, best, near) if near else []
-    costs = {p.index: cost for p, cost in zip(near, said, strict=True) if cost < free[p.index]}
-    return [together for f in found for together in f.together(costs)]
+    costs = page.again(best.outline, ALONG * best.scale, best.pieces, best.scale)
+    return [together for f in found for together in f.together(costs)] if costs else []
 
 
 def _around(boxes: Sequence[Sequence[float]]) -> Box:

@@ -10,7 +10,7 @@ from pages import measured
 
 from sketch.ink import Sketch, Stroke
 from sketch.page.pieces import Page
-from sketch.scoring import meaningless, misfit
+from sketch.scoring import FREE, misfit, strange
 from sketch.shapes.bars import STRAIGHT, read_bar_of_two
 from sketch.shapes.marks import read_cross
 
@@ -77,4 +77,4 @@ def test_ink_that_an_x_does_not_need_leaves_it_rough(way: tuple[Point, Point]) -
     assert found is not None
     spare = math.dist(*way) / sum(p.length for p in page.pieces.values())
     count = spare * sum(p.observations for p in page.pieces.values())
-    assert found.rough == pytest.approx(plain.rough + meaningless(count), rel=0.03)
+    assert found.rough == pytest.approx(plain.rough + (strange(count) + FREE * count), rel=0.03)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import itertools
 import math
 
@@ -20,10 +21,11 @@ from sketch.kernel import (
     lent,
     measure,
     off_outline,
-    within,
 )
+from sketch.library import address, library
 from sketch.page.loose import LooseEnds
 from sketch.page.pieces import Page
+from sketch.scoring import misfit
 from sketch.shapes.closed import fit_closed
 
 Array = NDArray[np.float64]
@@ -119,11 +121,12 @@ def test_heads_are_the_nearest_small_strokes() -> None:
 
 
 def test_ink_along_an_outline_and_its_distance() -> None:
-    strokes = scattered(2, 80)
-    ink = measured(page(strokes))
     t = np.linspace(0, 2 * math.pi, 24, endpoint=False)
     ring = np.stack([150 + 140 * np.cos(t), 150 + 140 * np.sin(t)], axis=1)
-    near = {p.index for p in ink.along(ring, 30.0)}
+    along = [(ring[k : k + 7] - 150) * (1 + k / 150) + 150 for k in range(0, 16, 2)]
+    ink = measured(page([*scattered(2, 80), *along]))
+    own, scale = len(ink.pieces) - 1, 40.0  # the last is what the outline is of
+    again = ink.again(ring, 30.0, (own,), scale)
     off = off_outline(ink.strokes, list(ink.pieces), ring)
     for p, square in zip(ink.pieces.values(), off, strict=True):
         samples = ink.strokes.samples[p.index]
@@ -135,8 +138,12 @@ def test_ink_along_an_outline_and_its_distance() -> None:
         x0, y0, x1, y1 = p.box
         inside = min(x0, y0) >= 150 - 170 and max(x1, y1) <= 150 + 170
         places = math.sqrt(d2[[0, 16, 31, 47]].mean()) < 0.3 * max(p.scale, p.extent / 2)
-        assert (p.index in near) == (inside and places)
-    assert Page().along(ring, 1.0) == []
+        cost = 4 + p.observations + misfit(square / min(scale, p.scale) ** 2, p.observations)
+        near = inside and places and p.index != own
+        assert (p.index in again) == (near and cost < p.unread)
+        assert again.get(p.index, cost) == pytest.approx(cost)
+    assert 2 < len(again) < 8
+    assert Page().again(ring, 1.0, (), scale) == {}
 
 
 def test_pieces_near_a_place_are_those_whose_boxes_are() -> None:
@@ -296,11 +303,18 @@ def test_what_is_within_a_triangle_whichever_way_it_goes() -> None:
         i: float(-((ink.strokes.samples[i, :, None] - triangle) * normals).sum(axis=2).min())
         for i in ink.pieces
     }
+    samples, within = ctypes.c_void_p(address(ink.strokes.samples)), library().ink_within
     for reach in (0.0, 25.0):
-        inside = {i for i in ink.pieces if within(ink.strokes, i, triangle, reach)}
-        assert inside == {i for i, far in beyond.items() if far <= reach}
-        assert inside == {i for i in ink.pieces if within(ink.strokes, i, triangle[::-1].copy(), reach)}
-        assert 2 < len(inside) < 40
+        its = [
+            {
+                i
+                for i in ink.pieces
+                if within(samples, i, ctypes.c_void_p(address(way)), ctypes.c_double(reach))
+            }
+            for way in (triangle, triangle[::-1].copy())
+        ]
+        assert its[0] == its[1] == {i for i, far in beyond.items() if far <= reach}
+        assert 2 < len(its[0]) < 40
 
 
 def test_depths_are_those_of_each_place() -> None:
