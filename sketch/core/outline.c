@@ -44,8 +44,8 @@ static const double LONG = 1.6; /* outlines longer than this many times their wi
 /* Least squares of x² + y² = a(x² - y²) + b 2xy + cx + dy + e, or of its circles alone (a = b = 0): near the unit circle the
  * algebraic distance is the geometric one to first order. Reweighted (Cauchy's weights), so that a pen's hooks and tails do
  * not pull. Returns the mean squared distance (Sampson's, capped). */
-static double fit_round(const double *x, const double *y, const double *factor, double cap2, int circle,
-                        double conic[5]) {
+INK_WIDE static double fit_round(const double *x, const double *y, const double *factor, double cap2, int circle,
+                                 double conic[5]) {
     double weight[SAMPLES], sum = 0;
     int first = circle ? 2 : 0;
     for (int i = 0; i < SAMPLES; i++) weight[i] = 1;
@@ -181,6 +181,20 @@ static const double POINT = 0.015; /* how far ink is off a sharp corner all the 
 static const double BETWEEN = 0.3; /* of a step: how far from a corner the points before and behind it usually are */
 static const double UNDRAWN = 2; /* times a gap: a corner that is as near to both of its ends was not drawn */
 
+/* Squared distance of a place from the closed line through the samples, which are there twice over. */
+INK_WIDE static double nearest_ink2(const Runs *r, double px, double py) {
+    double off2[SAMPLES], best = INFINITY;
+    for (int i = 0; i < SAMPLES; i++) { /* without branches: a compiler takes several at a time */
+        double ax = r->x[i], ay = r->y[i], dx = r->x[i + 1] - ax, dy = r->y[i + 1] - ay, l2 = dx * dx + dy * dy;
+        double t = ((px - ax) * dx + (py - ay) * dy) / (l2 > 0 ? l2 : 1);
+        t = t < 0 ? 0 : t > 1 ? 1 : t;
+        double ex = ax + t * dx - px, ey = ay + t * dy - py;
+        off2[i] = ex * ex + ey * ey;
+    }
+    for (int i = 0; i < SAMPLES; i++) best = off2[i] < best ? off2[i] : best;
+    return best;
+}
+
 /* Nats to say how far ink stays off the corners of its k-gon, beyond what is usual: an even one's corner that is rounded by a
  * radius r is r (sec(pi / k) - 1) off. Student's t with four degrees, as writers differ; of something round a polygon's corners
  * are far off.
@@ -189,11 +203,7 @@ static double blunted(const Runs *r, const Ink *ink, const double *corners, int 
     double round = BLUNT * (1 / cos(PI / k) - 1), between = BETWEEN * step * sin(PI / k);
     double seen2 = round * round + between * between, usual2 = seen2 + POINT * POINT + square, off2 = 0;
     for (const double *c = corners; c < corners + 2 * k; c += 2) {
-        double best = INFINITY;
-        for (int i = 0, j = r->n - 1; i < r->n; j = i++) {
-            double a[2] = {r->x[j], r->y[j]}, b[2] = {r->x[i], r->y[i]};
-            best = fmin(best, segment_distance2(c[0], c[1], a, b));
-        }
+        double best = nearest_ink2(r, c[0], c[1]);
         for (const Lift *l = ink->lifts; l < ink->lifts + ink->lift_count; l++)
             if (fmax(length(c[0] - l->end[0], c[1] - l->end[1]), length(c[0] - l->begin[0], c[1] - l->begin[1])) <
                 UNDRAWN * l->gap)

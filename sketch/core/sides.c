@@ -122,7 +122,7 @@ static double undrawn(const Ink *ink, Polygon *p, const double *at, const double
 
 /* The polygon's cost, and its mean squared distance. Ink that overshoots a corner lies on its side's line: it pays for the
  * length beyond at a quarter. */
-static void judge(const Ink *ink, Polygon *p) {
+INK_WIDE static void judge(const Ink *ink, Polygon *p) {
     const Runs *r = p->runs;
     /* the samples are there twice: none is beyond the end */
     const double *x = r->x + p->start, *y = r->y + p->start, *factor = ink->factor + p->start, cap2 = ink->cap2;
@@ -134,20 +134,23 @@ static void judge(const Ink *ink, Polygon *p) {
         drawn.side[q].x -= off * p->side[q].dy;
         drawn.side[q].y += off * p->side[q].dx;
     }
-    double at[2 * SIDES], share[SIDES], length_of[SIDES], off[SAMPLES], sum = 0, around = 0, area = 0, bows = 0;
+    double at[2 * SIDES], share[SIDES], length_of[SIDES], stretched[SIDES], off[SAMPLES];
+    double sum = 0, around = 0, area = 0, bows = 0;
+    const int even = p->stretch[0] == 1 && p->stretch[1] == 1;
     polygon_corners(&drawn, at);
     for (int q = 0; q < k; q++) {
         const double *a = at + 2 * q, *b = at + 2 * ((q + 1) % k);
-        length_of[q] = length((b[0] - a[0]) / p->stretch[0], (b[1] - a[1]) / p->stretch[1]);
+        const double l = stretched[q] = length(b[0] - a[0], b[1] - a[1]);
+        length_of[q] = even ? l : length((b[0] - a[0]) / p->stretch[0], (b[1] - a[1]) / p->stretch[1]);
         around += length_of[q];
         area += a[0] * b[1] - a[1] * b[0];
-        share[q] = p->side[q].bow / fmax(length(b[0] - a[0], b[1] - a[1]), 1e-9);
+        share[q] = p->side[q].bow / (l > 1e-9 ? l : 1e-9);
         bows += share[q] / k;
     }
     double odd = 0.5 * k * bows * bows / (ROUNDED * ROUNDED), bent = 1, per_around = 1 / fmax(around, 1e-9);
     for (int q = 0; q < k; q++) {
         const double *a = at + 2 * q, *b = at + 2 * ((q + 1) % k);
-        double dx = b[0] - a[0], dy = b[1] - a[1], l = length(dx, dy), bow = p->side[q].bow;
+        double dx = b[0] - a[0], dy = b[1] - a[1], l = stretched[q], bow = p->side[q].bow;
         double per = l > 0 ? 1 / l : 0, ux = dx * per, uy = dy * per;
         for (int i = p->cut[q]; i < p->cut[q + 1]; i++) { /* without branches: a compiler takes several at a time */
             double px = x[i] - a[0], py = y[i] - a[1];

@@ -45,7 +45,7 @@ static double bow_squares(int m) {
     return fourth - m * mean * mean;
 }
 
-void runs_prepare(Runs *r, int begin, double stiffness) {
+INK_WIDE void runs_prepare(Runs *r, int begin, double stiffness) {
     int n = r->n;
     memcpy(r->x + n, r->x, n * sizeof *r->x);
     memcpy(r->y + n, r->y, n * sizeof *r->y);
@@ -158,7 +158,7 @@ void split_begin(Split *s, const Runs *r, int start) {
     memcpy(s->best[1], run_cost(s, 0), sizeof s->best[1]);
 }
 
-void split_further(Split *s, int k) {
+INK_WIDE void split_further(Split *s, int k) {
     double *low = s->best[k];
     for (int j = 0; j <= s->n; j++) low[j] = INFINITY;
     for (int i = 2 * (k - 1); i <= s->n - 2; i++) { /* a run has two samples or more */
