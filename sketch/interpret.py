@@ -120,15 +120,15 @@ def _anchored(cross: Reading, bodies: Bodies) -> tuple[Drawn | None, list[Drawn]
 
     Of several that hold them it is the one drawn last; of none the one that its bars reach.
     """
-    at = cross.outline.mean(axis=0)
+    (x, y), ends = cross.outline.mean(axis=0).tolist(), cross.outline.tolist()
     reach = float(np.hypot(*np.ptp(cross.outline, axis=0))) / 2
-    near = [(d.depth(at), d) for d in bodies.near(at, reach) if d.reading.solid]
+    near = [(d.depth((x, y)), d) for d in bodies.near((x, y), reach) if d.reading.solid]
     over = [d for depth, d in near if depth < 0]
     if not over:
         depth, nearest = min(near, key=lambda t: t[0], default=(reach, None))
         over = [nearest] if nearest is not None and depth < reach else []
     # a rod that runs under an X, and holds none of it, is not what the X was drawn on
-    held = [d for d in over if 2 * sum(d.depth(end) < 0 for end in cross.outline) >= len(cross.outline)]
+    held = [d for d in over if 2 * sum(d.depth((x, y)) < 0 for x, y in ends) >= len(ends)]
     return max(held or over, key=lambda d: d.reading.strokes[-1], default=None), over, held
 
 

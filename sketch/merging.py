@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sketch.kernel import depth
+from sketch.page.near import boxes_around
 from sketch.scoring import Fitted
 from sketch.shapes.bars import ASIDE, LIFT
 from sketch.typing import Array
@@ -58,7 +59,8 @@ def _bodies_gone_over(chosen: list[Chosen]) -> list[Chosen]:
     at = np.array([chosen[k].fit.middle for k in closed]).reshape(-1, 2)
     far = SAME_PLACE * np.maximum(scale, scale[:, None])
     close = np.abs(scale - scale[:, None]) <= far
-    close &= np.abs(at[:, None] - at).max(axis=2, initial=0.0) <= far
+    for side in at.T:
+        close &= np.abs(side[:, None] - side) <= far
     gone: set[int] = set()  # into another
     for a, b in np.argwhere(np.triu(close, 1)).tolist():
         k, j = closed[a], closed[b]
@@ -83,9 +85,10 @@ def _in_one_place(a: Fitted, b: Fitted) -> bool:
 def _marks_gone_over(marks: list[Chosen]) -> list[Chosen]:
     """Some arrows, or some crosses, with those between the same places joined to the best of them."""
     marks = sorted(marks, key=lambda c: -c.gain)
-    boxes = np.array([(*c.fit.outline.min(axis=0), *c.fit.outline.max(axis=0)) for c in marks]).reshape(-1, 4)
+    boxes = boxes_around([c.fit.outline for c in marks])
     reach = np.array([SAME_PLACE * math.dist(*c.fit.outline[:2].tolist()) for c in marks])
-    close = np.abs(boxes[:, None] - boxes).max(axis=2) < reach  # for else their ends are further apart
+    apart = [np.abs(side[:, None] - side) for side in boxes.T]
+    close = np.maximum.reduce(apart) < reach  # for else their ends are further apart
     whole: dict[int, Chosen] = {}
     for n, mark in enumerate(marks):
         for k in np.flatnonzero(close[n, :n]).tolist():

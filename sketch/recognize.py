@@ -279,7 +279,7 @@ class Recognizer:
         for p, gains in zip(proposed, told, strict=True):
             there = known.get(p)
             if there is None or there[0] != gains:
-                there = gains, part([c.pieces for c in p.candidates], gains)
+                there = gains, p.alone if gains == p.gains else part([c.pieces for c in p.candidates], gains)
             self._parts[p] = there
         return self._together.best([self._parts[p][1] for p in proposed])
 

@@ -12,11 +12,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sketch.lazy import lazy
 from sketch.typing import Array
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class Fitted:
     def closed(self) -> bool:
         return self.scale > 0
 
-    @cached_property
+    @lazy
     def middle(self) -> tuple[float, float]:
         """The mean of its outline's points [pixels]."""
         x, y = (np.add.reduce(self.outline, axis=0) / len(self.outline)).tolist()

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from sketch.kernel import depths
+from sketch.page.near import overlap
 from sketch.page.pieces import Page, Piece
 from sketch.scoring import Fitted
 from sketch.shapes.proposals import Pick, Proposed, Row, proposing
@@ -124,8 +125,7 @@ def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) 
     bodies = [c for c, _ in likely if c.closed]
     boxes = np.array([row[:4] for c, row in likely if c.closed]).reshape(-1, 4)
     reach = NEAR * longs[:, None]
-    low, high = ends.min(axis=1) - reach, ends.max(axis=1) + reach
-    near = ((boxes[:, :2] < high[:, None]) & (boxes[:, 2:] > low[:, None])).all(axis=2)
+    near = overlap(boxes, np.concatenate([ends.min(axis=1) - reach, ends.max(axis=1) + reach], axis=1))
     taken = {i for body in bodies for i in body.pieces}
     idle = [p for i, p in page.pieces.items() if i not in taken]
     elsewhere = _axes(arrows, ends, longs, [c for c, _ in likely if c.kind == "arrow"])
@@ -167,9 +167,9 @@ def _two_headed(page: Page, arrows: list[Fitted], ends: Array, longs: Array, idl
     """At the tails of which arrows there is ink, on both sides, that means nothing else."""
     boxes = np.array([p.box for p in idle]).reshape(-1, 4)
     tails, reach = ends[:, 0], AT_TAIL * longs
-    low, high = (tails - reach[:, None])[:, None], (tails + reach[:, None])[:, None]
+    at_tail = np.concatenate([tails - reach[:, None], tails + reach[:, None]], axis=1)
     sides: dict[int, list[float]] = {}
-    for k, j in np.argwhere(((boxes[:, :2] < high) & (boxes[:, 2:] > low)).all(axis=2)).tolist():
+    for k, j in np.argwhere(overlap(boxes, at_tail)).tolist():
         p, long = idle[j], float(longs[k])
         if p.extent > MARK * long or p.index in arrows[k].pieces:
             continue

@@ -74,15 +74,12 @@ class Context:
         stay = [k for k, p in enumerate(proposed) if p in known]
         kept = set(stay).difference(stay[k] for k, _ in _beside([proposed[k] for k in stay], others))
         anew = [k for k in range(len(proposed)) if k not in kept]
-        near: dict[int, Around] = {k: {} for k in anew}
+        near = {k: _Bodies(held) for k in anew}
         every = list(bodies.items())
+        sorts = [None if c.closed else c.kind for c in bodies]
         for k, b in _beside([proposed[k] for k in anew], bodies):
-            body, row = every[b]
-            near[anew[k]][body] = row
-        told = [
-            _told(p, _Bodies(near[k], held), size, drawn) if k in near else known[p]
-            for k, p in enumerate(proposed)
-        ]
+            near[anew[k]].add(*every[b], sorts[b])
+        told = [_told(p, near[k], size, drawn) if k in near else known[p] for k, p in enumerate(proposed)]
         self._known = dict(zip(proposed, told, strict=True))
         self._bodies, self._sizes = bodies, (size, drawn)
         out = list(told)
@@ -205,15 +202,25 @@ def _letters(proposed: list[Proposed], likely: list[Pick], largest: float, known
 class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
-    def __init__(self, bodies: Around, held: dict[Fitted, int]) -> None:
+    def __init__(self, held: dict[Fitted, int]) -> None:
         """held: of open lines, how many of their ends small rings hold."""
         self.held = held
         # likewise of the ink that each is most of; on a picture a line that others cross may be most of none
-        bars = [line for line in bodies if line.kind == "bar"]
-        self.held_of = {line.pieces[0]: held.get(line, 0) for line in bars if line.pieces}
-        self.closed = [(body, row) for body, row in bodies.items() if body.closed]
-        self.lines = [(c, row) for c, row in bodies.items() if c.kind == "bar"]
-        self.crosses = [(c, row[4]) for c, row in bodies.items() if c.kind == "cross"]
+        self.held_of: dict[int, int] = {}
+        self.closed: list[tuple[Fitted, Row]] = []
+        self.lines: list[tuple[Fitted, Row]] = []
+        self.crosses: list[tuple[Fitted, float]] = []
+
+    def add(self, c: Fitted, row: Row, kind: str | None) -> None:
+        """Take one in, with where it is.  kind: of a line or a mark, else None."""
+        if kind is None:
+            self.closed.append((c, row))
+        elif kind == "cross":
+            self.crosses.append((c, row[4]))
+        else:
+            self.lines.append((c, row))
+            if c.pieces:
+                self.held_of[c.pieces[0]] = self.held.get(c, 0)
 
     def under(self, mark: Fitted, extent: float, least: float = 0.0) -> Iterator[Fitted]:
         """The bodies, of extents of more than `least`, that a mark is over; where any will do, the others are not

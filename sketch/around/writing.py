@@ -13,6 +13,7 @@ from sketch.around.hatching import hatching
 from sketch.around.pins import REACH, is_over
 from sketch.around.rows import TALL, Rows, near_one_another
 from sketch.kernel import depth
+from sketch.page.near import overlap
 from sketch.page.pieces import Page
 from sketch.scoring import Fitted
 from sketch.shapes.proposals import Pick, Proposed, Row
@@ -140,8 +141,8 @@ class _Marks:
     def in_bodies(self) -> set[int]:
         """The pieces of small outlines, of anything but a ring, within bodies: letters, as no body is there."""
         small = [k for k in np.flatnonzero(self._extents < self.largest) if self._bodies[k].kind != "circle"]
-        low, high = self._boxes[small, None, :2], self._boxes[small, None, 2:]
-        held = ((low > self._boxes[:, :2]) & (high < self._boxes[:, 2:])).all(axis=2)
+        # within each other's: from its greatest to its least x and y, a box is within those that it overlaps
+        held = overlap(self._boxes, self._boxes[small][:, [2, 3, 0, 1]])
         found = set[int]()
         for k, b in np.argwhere(held).tolist():
             c, body = self._bodies[small[k]], self._bodies[b]

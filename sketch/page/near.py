@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +13,7 @@ from sketch.kernel import Places, Strokes
 from sketch.library import address, library
 from sketch.typing import Array, Box, Point
 
-__all__ = ["Boxes", "Near"]
+__all__ = ["Boxes", "Near", "boxes_around", "overlap"]
 
 HEADS = 4  # as in core/heads.c
 
@@ -26,6 +28,22 @@ _touching = ctypes.CFUNCTYPE(_int, _int, _pointer, *[_double] * 4, _pointer)(("i
 _reaching = ctypes.CFUNCTYPE(_int, _int, *[_pointer] * 2, *[_double] * 5, _pointer)(
     ("ink_reaching", library())
 )
+
+
+def boxes_around(outlines: Sequence[Array]) -> Array:
+    """The boxes around outlines, each (n, 2), with a point at least: least x and y, greatest x and y, (outlines, 4)."""
+    if not outlines:
+        return np.empty((0, 4))
+    first = np.fromiter(accumulate(map(len, outlines[:-1]), initial=0), dtype=np.intp)
+    points = np.concatenate(outlines)
+    return np.concatenate([np.minimum.reduceat(points, first), np.maximum.reduceat(points, first)], axis=1)
+
+
+def overlap(boxes: Array, others: Array) -> Array:
+    """Which of some boxes, (n, 4), have a point in common with which others, (m, 4), and no edge alone: (m, n)."""
+    (x0, y0, x1, y1), (left, top, right, bottom) = boxes.T, others.T[..., None]
+    # a pair at a time: numpy takes all of two in many times as long
+    return np.asarray((x0 < right) & (y0 < bottom) & (x1 > left) & (y1 > top))
 
 
 class Boxes:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
 from sketch.kernel import joined, measure, places
+from sketch.lazy import lazy
 from sketch.page.loose import Chain, End, LooseEnds
 from sketch.page.near import Near
 from sketch.scoring import unread
@@ -71,12 +71,12 @@ class Piece:
         """Root mean square distance from a straight line, as a share of its length."""
         return math.sqrt(self.residual[1]) / self.length
 
-    @cached_property
+    @lazy
     def retraces(self) -> bool:
         """Whether it goes along a straight line, and over that again."""
         return self.length > ONCE * self.extent and self.across < LINE * self.extent
 
-    @cached_property
+    @lazy
     def reach(self) -> tuple[Point, Point]:
         """Of a straight line, where it begins and ends: at its ends, if it does not go over itself."""
         if not self.retraces:
@@ -90,7 +90,7 @@ class Piece:
         (ax, ay), (bx, by) = (middle + np.outer((at.min(), at.max()), along)).tolist()
         return (ax, ay), (bx, by)
 
-    @cached_property
+    @lazy
     def unread(self) -> float:
         """Nats to say its ink freely."""
         return unread(self)

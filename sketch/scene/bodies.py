@@ -5,7 +5,6 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -13,9 +12,10 @@ import numpy as np
 from sim.scene import Body, Circle, Polygon, Rectangle
 from sketch import kernel
 from sketch.kernel import depth, is_simple
-from sketch.page.near import Boxes
+from sketch.lazy import lazy
+from sketch.page.near import Boxes, boxes_around
 from sketch.reading import Reading
-from sketch.typing import Array
+from sketch.typing import Array, Point
 
 __all__ = ["Bodies", "Drawn", "draw_body", "ids", "thick", "touch"]
 
@@ -40,19 +40,20 @@ class Drawn:
     size: float
     body: Body
 
-    @cached_property
-    def middle(self) -> Array:
-        """Of its corners: of a circle its centre [pixels], (2,)."""
-        return np.asarray(self.outline.mean(axis=0))
+    @lazy
+    def middle(self) -> Point:
+        """Of its corners: of a circle its centre [pixels]."""
+        x, y = (np.add.reduce(self.outline, axis=0) / len(self.outline)).tolist()
+        return x, y
 
     @property
     def radius(self) -> float:
         """Of a circle, or of one as large [pixels]."""
         return self.size / math.sqrt(math.pi)
 
-    def depth(self, point: Array) -> float:
+    def depth(self, point: Point) -> float:
         """Distance of a point from the outline [pixels], negative inside."""
-        return depth(float(point[0]), float(point[1]), self.outline)
+        return depth(*point, self.outline)
 
 
 class Bodies:
@@ -60,12 +61,11 @@ class Bodies:
 
     def __init__(self, drawn: list[Drawn]) -> None:
         self.drawn = drawn
-        boxes = [[*d.outline.min(axis=0), *d.outline.max(axis=0)] for d in drawn]
-        self._boxes = Boxes(np.array(boxes, dtype=np.float64).reshape(-1, 4))
+        self._boxes = Boxes(boxes_around([d.outline for d in drawn]))
 
-    def near(self, at: Array, reach: float) -> list[Drawn]:
+    def near(self, at: Point, reach: float) -> list[Drawn]:
         """Those whose bounding box, widened by `reach` [pixels], has the point, in order of drawing."""
-        x, y = at.tolist()
+        x, y = at
         return [self.drawn[k] for k in self._boxes.touching((x - reach, y - reach, x + reach, y + reach))]
 
 
@@ -115,8 +115,7 @@ def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float
 
 def touch(a: Drawn, b: Drawn, ring: Drawn) -> bool:
     """Whether two bodies overlap, or are less than a ring's radius apart, within some radii of its middle."""
-    x, y = ring.middle.tolist()
-    return kernel.touch(a.outline, b.outline, (x, y), 5 * ring.radius, ring.radius)
+    return kernel.touch(a.outline, b.outline, ring.middle, 5 * ring.radius, ring.radius)
 
 
 def ids(bodies: list[Drawn]) -> str:

@@ -52,7 +52,7 @@ def pivots(
         under, further, odds = _odds(sketch, ring, bodies, fixed, pin)
         if not under or not _is_pivot(ring, under, odds, notes):
             continue
-        x, y = (ring.middle / pixels_per_metre).tolist()
+        x, y = (at / pixels_per_metre for at in ring.middle)
         again = [p.joint for p in pins if _is_again(p, ring, under)]
         for joint in again:  # the smaller, which comes later, says better where
             joint.position = (x, -y)
@@ -200,7 +200,7 @@ def _foremost(over: list[Drawn], missed: list[Drawn]) -> list[Drawn]:
 
 def _holds(d: Drawn, other: Drawn) -> bool:
     """Whether the whole of another body is within one."""
-    return all(d.depth(p) < 0 for p in other.outline)
+    return all(d.depth((x, y)) < 0 for x, y in other.outline.tolist())
 
 
 def _near(ring: Drawn, reach: float, bodies: Bodies) -> list[tuple[float, Drawn]]:
@@ -220,7 +220,7 @@ def _off(d: Drawn, ring: Drawn) -> float:
     depth, line = d.depth(ring.middle), d.reading.outline
     if d.reading.kind == "bar" and depth > 0:
         long = float(np.hypot(*np.ptp(line, axis=0)))
-        depth *= not is_on_line(ring.middle.tolist(), math.sqrt(8) * ring.radius, line, long)
+        depth *= not is_on_line(ring.middle, math.sqrt(8) * ring.radius, line, long)
     return depth
 
 
@@ -259,7 +259,7 @@ def _joined(wheel: Drawn, other: Drawn, ring: Drawn, bodies: Bodies) -> bool:
 
 def _off_ink(sketch: Sketch, d: Drawn, ring: Drawn) -> float:
     """The distance of a ring's middle from the ink that a body was drawn with [pixels]."""
-    x, y = ring.middle.tolist()
+    x, y = ring.middle
     inks = (sketch.strokes[s].points[:, :2] for s in d.reading.strokes)
     there_and_back = (np.concatenate([ink, ink[-2:0:-1]]) for ink in inks)  # closed, around nothing
     return min((abs(depth(x, y, ink)) for ink in there_and_back), default=math.inf)

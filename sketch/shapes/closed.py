@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from itertools import accumulate
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from sketch.typing import Array
 __all__ = ["ClosedFit", "ClosedReadings", "Few", "Said", "closed_readings", "fit_closed"]
 
 LIFT = 6  # numbers that a struct Lift of core/outline.h takes
-_READINGS = 24  # numbers of a struct Readings of core/readings.c
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, _pointer, _pointer)(
     ("ink_closed", library())
@@ -90,43 +89,38 @@ class ClosedFit:
         return self.values[_PLACES["middle"]], self.values[_PLACES["axes"]].reshape(2, 2)
 
 
-class Few(NamedTuple):
+class Few(ctypes.Structure):
     """What is known of ink that came in few points, in equal steps (see core/readings.c).
 
     said: numbers that they say; 0 for ink that came in many.  steps: between them.
     even, cornered: nats to say how even these are, of something round and of a polygon of few sides.
     """
 
-    said: float
-    steps: float
-    even: float
-    cornered: float
+    _fields_ = tuple((name, _double) for name in ("said", "steps", "even", "cornered"))
 
 
-class Said(NamedTuple):
-    """What a reading takes to say [nats], of that its parameters, and the ink, given a polygon's outline."""
+class Said(ctypes.Structure):
+    """What a reading takes to say [nats], infinitely many for none, of that its parameters, and the ink, given a
+    polygon's outline."""
 
-    cost: float
-    model: float
-    rough: float
+    _fields_ = tuple((name, _double) for name in ("cost", "model", "rough"))
 
 
-class ClosedReadings(NamedTuple):
-    """The readings of a closed chain of ink (see core/readings.c): infinitely dear where there is none.
+class ClosedReadings(ctypes.Structure):
+    """The readings of a closed chain of ink (see core/readings.c).
 
     scale, narrow, gap: as of `sketch.scoring.Fitted`.
-    said: of the circle, the ellipse, the polygon, the rectangle and the outline of any course.
+    circle, ellipse, polygon, rectangle, free: what each takes to say.
     at: the circle's centre and radius [pixels].
-    sides: of the polygon.  next: of the one that comes next, and the nats that it takes more.
+    sides: of the polygon.  next, ahead: of the one that comes next, and the nats that it takes more.
     """
 
-    scale: float
-    narrow: float
-    gap: float
-    said: list[Said]
-    at: tuple[float, float, float]
-    sides: int
-    next: tuple[int, float]
+    _fields_ = (
+        *((name, _double) for name in ("scale", "narrow", "gap")),
+        *((name, Said) for name in ("circle", "ellipse", "polygon", "rectangle", "free")),
+        ("at", _double * 3),
+        *((name, _double) for name in ("sides", "next", "ahead")),
+    )
 
 
 def fit_closed(
@@ -156,8 +150,7 @@ def closed_readings(
 
     rounded: the fits by which it is round.  besides: nats to say what else there is.
     """
-    out = (_double * _READINGS)()
-    _readings(fit.address, rounded.address, observations, besides, (_double * 4)(*few), out)
-    scale, narrow, gap, *said, x, y, r, sides, second, ahead = out
-    its = [Said(*three) for three in zip(said[::3], said[1::3], said[2::3], strict=True)]
-    return ClosedReadings(scale, narrow, gap, its, (x, y, r), int(sides), (int(second), ahead))
+    found = ClosedReadings()
+    at = ctypes.byref(few), ctypes.byref(found)
+    _readings(fit.address, rounded.address, observations, besides, *at)
+    return found

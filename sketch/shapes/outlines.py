@@ -107,22 +107,23 @@ def _read(
         few = _stepping(points, rounded.ellipse, sum(map(len, parts)) - len(parts))
     found = closed_readings(fit, rounded, count, besides, few)
     its = found.scale, found.narrow, found.gap
-    circle, oval, polygon, rectangle, free_form = found.said
-    x, y, r = found.at
+    circle, (x, y, r) = found.circle, found.at
     out = [Fitted("circle", names, circle.cost, np.array([x, y]) + r * _RING, circle.model, *its)]
     ellipse = rounded.ellipse
     if ellipse is not None:
         outline = ellipse[0] + _RING @ ellipse[1].T
-        out.append(Fitted("ellipse", names, oval.cost, outline, oval.model, *its))
-    if polygon.cost < math.inf:
-        outline, model, rough = fit.vertices(found.sides), polygon.model, polygon.rough
-        out.append(Fitted("polygon", names, polygon.cost, outline, model, *its, rough, found.next))
-    if rectangle.cost < math.inf:
-        model, rough = rectangle.model, rectangle.rough
-        out.append(Fitted("rectangle", names, rectangle.cost, fit.rectangle, model, *its, rough))
-    course = course_around(np.concatenate(parts)) if free_form.cost < math.inf else None
+        out.append(Fitted("ellipse", names, found.ellipse.cost, outline, found.ellipse.model, *its))
+    said = found.polygon
+    if said.cost < math.inf:
+        outline, ahead = fit.vertices(int(found.sides)), (int(found.next), found.ahead)
+        out.append(Fitted("polygon", names, said.cost, outline, said.model, *its, said.rough, ahead))
+    said = found.rectangle
+    if said.cost < math.inf:
+        out.append(Fitted("rectangle", names, said.cost, fit.rectangle, said.model, *its, said.rough))
+    said = found.free
+    course = course_around(np.concatenate(parts)) if said.cost < math.inf else None
     if course is not None:
-        out.append(Fitted("free", names, free_form.cost, course, free_form.model, *its))
+        out.append(Fitted("free", names, said.cost, course, said.model, *its))
     return out
 
 

@@ -13,14 +13,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Hashable, Sequence, Set
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from itertools import accumulate
+from functools import partial
+from itertools import islice
 
 import numpy as np
 
 from sketch.kernel import off_outline
+from sketch.lazy import lazy
 from sketch.page.grouping import WIDE, closing_chains, closing_ink, crosses, crossing, in_line, shafts
 from sketch.page.loose import Chain, End
+from sketch.page.near import boxes_around
 from sketch.page.pieces import Looked, Page, Piece
 from sketch.scoring import Fitted, misfit_of
 from sketch.search import Part, part
@@ -64,9 +66,11 @@ class Alone:
     plain: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Proposed:
     """What one piece proposed. What is made of it is made when it is asked for: not all of a picture's is.
+
+    Never changed once it is made, but for that.
 
     Attributes:
         candidates: readings of groups that it leads, and gains: what each saves against saying its ink freely.
@@ -79,55 +83,48 @@ class Proposed:
     looked: Looked
     fits: Fits
 
-    @cached_property
+    @lazy
     def pieces(self) -> frozenset[int]:
         """The pieces of all groups."""
         return frozenset(i for c in self.candidates for i in c.pieces)
 
-    @cached_property
+    @lazy
     def rows(self) -> list[Row]:
         """Of the outline of each candidate its least x and y, greatest x and y, and extent [pixels]."""
-        if not self.candidates:
-            return []
-        outlines = [c.outline for c in self.candidates]
-        first = np.fromiter(accumulate(map(len, outlines[:-1]), initial=0), dtype=np.intp)
-        points = np.concatenate(outlines)
-        low, high = np.minimum.reduceat(points, first), np.maximum.reduceat(points, first)
-        wide = np.hypot(*(high - low).T)
-        return [[*a, *b, w] for a, b, w in zip(low.tolist(), high.tolist(), wide.tolist(), strict=True)]
+        return _rows(self.candidates)
 
-    @cached_property
+    @lazy
     def box(self) -> Box:
         """The box around all these outlines."""
         return _around(self.rows)
 
-    @cached_property
+    @lazy
     def seen(self) -> Box:
         """The box around all boxes of what it saw."""
         return _around(self.looked.boxes)
 
-    @cached_property
+    @lazy
     def arrows(self) -> list[int]:
         """Which of the candidates are arrows."""
         return [k for k, c in enumerate(self.candidates) if c.kind == "arrow"]
 
-    @cached_property
+    @lazy
     def bars(self) -> list[int]:
         """Which of them are bars."""
         return [k for k, c in enumerate(self.candidates) if c.kind == "bar"]
 
-    @cached_property
+    @lazy
     def ends(self) -> list[tuple[int, list[list[float]]]]:
         """The ends of each bar, with which of the candidates it is [pixels]."""
         lines = ((k, self.candidates[k].outline) for k in self.bars)
         return [(k, line[:: len(line) - 1].tolist()) for k, line in lines]
 
-    @cached_property
+    @lazy
     def borrowing(self) -> bool:
         """Whether some have a side of another body."""
         return any(c.lender >= 0 for c in self.candidates)
 
-    @cached_property
+    @lazy
     def alone(self) -> Part:
         """What they gain by themselves."""
         return part([c.pieces for c in self.candidates], self.gains)
@@ -165,10 +162,17 @@ class Proposals:
         """What all pieces propose, in the order of drawing."""
         page = self.page
         if self._stale:
+            new = []
             for i in sorted(self._stale):
                 known = self.by_piece.get(i)
-                self.by_piece[i] = self._propose(page.pieces[i], known.fits if known else {})
+                self.by_piece[i] = own = self._propose(page.pieces[i], known.fits if known else {})
+                new.append(own)
             self._stale.clear()
+            rows = iter(
+                _rows([c for own in new for c in own.candidates])
+            )  # of many at once, which is sooner done
+            for own in new:
+                own.rows = list(islice(rows, len(own.candidates)))
         return [self.by_piece[i] for i in page.pieces]
 
     # ------------------------------------------------------------ what has changed
@@ -301,6 +305,14 @@ def proposing(
 ) -> Proposed:
     """Readings with their gains; looked, fits: what they depend on, and were made of."""
     return Proposed(candidates, gains, Looked() if looked is None else looked, {} if fits is None else fits)
+
+
+def _rows(fits: Sequence[Fitted]) -> list[Row]:
+    """Of the outline of each fit its least x and y, greatest x and y, and extent [pixels]."""
+    boxes = boxes_around([c.outline for c in fits])
+    wide = np.hypot(boxes[:, 2] - boxes[:, 0], boxes[:, 3] - boxes[:, 1])
+    rows: list[Row] = np.column_stack([boxes, wide]).tolist()
+    return rows
 
 
 def _closes(outline: Fitted, free: float) -> bool:

@@ -11,11 +11,11 @@ import math
 from cmath import phase
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 
+from sketch.lazy import lazy
 from sketch.scan.binding import bend, heading
 from sketch.scan.skeleton.graph import SIGHT, End, Graph
 from sketch.typing import Points
@@ -54,12 +54,12 @@ class Branch:
     bend: float
     centre: Points
 
-    @cached_property
+    @lazy
     def place(self) -> complex:
         """`start` as a number."""
         return complex(*self.start.tolist())
 
-    @cached_property
+    @lazy
     def direction(self) -> complex:
         """`outward` as a number."""
         return complex(*self.outward.tolist())

@@ -1,0 +1,28 @@
+"""Attributes that are made when they are first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+__all__ = ["lazy"]
+
+if TYPE_CHECKING:
+    from functools import cached_property as lazy
+else:
+
+    class lazy:
+        """As `functools.cached_property`, without its lock: before Python 3.12 that takes longer than most of what is
+        made, and a page asks for thousands."""
+
+        def __init__(self, make: Callable[[Any], Any]) -> None:
+            self.make, self.__doc__ = make, make.__doc__
+
+        def __set_name__(self, owner: type, name: str) -> None:
+            self.name = name
+
+        def __get__(self, whole: Any, owner: type | None = None) -> Any:
+            if whole is None:
+                return self
+            made = whole.__dict__[self.name] = self.make(whole)
+            return made
