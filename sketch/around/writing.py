@@ -25,8 +25,9 @@ __all__ = ["LARGEST", "WITHIN", "WRITTEN", "written"]
 WRITTEN = 60.0
 LARGEST = 0.05  # of what is drawn: nobody writes larger beside a drawing
 WITHIN = 2 * WRITTEN  # likewise of what is drawn over a body, which else is a mark on it
-# times that it is as large as a letter there, at most: marks are larger than what is written at them
-MARKED = {"circle": 1.7, "cross": 1.25}
+# times that it is as large as a letter there, at most: marks are larger than what is written at them; in one stroke
+# with loops, as those of a digit beside an "m", an X is one less likely than in two
+MARKED = {"circle": 1.7, "looped": 1.7, "cross": 1.25}
 # of the larger stroke: between a letter and the next, at most; a mark is set apart, and of two bars
 NEXT = {"circle": 0.5, "cross": 0.35}
 SAME = 0.1  # and between strokes of one
@@ -231,7 +232,8 @@ class _Marks:
     def _is_next(self, c: Fitted, size: float, i: int) -> bool:
         """Whether a stroke is as near to a reading's ink, and as large, as that of the same letter, or of the next."""
         pieces, other = self._page.pieces, self._page.pieces[i]
-        reach = NEXT[c.kind] if size < MARKED[c.kind] * other.extent else SAME
+        marked = MARKED["looped" if c.kind == "cross" and len(c.pieces) == 1 else c.kind]
+        reach = NEXT[c.kind] if size < marked * other.extent else SAME
         reach *= max(size, other.extent)
         near = [pieces[j].stroke for j in c.pieces if pieces[j].is_near(other, reach)]
         if not near:
