@@ -23,6 +23,9 @@ Gaps = dict[tuple[Fitted, Fitted], tuple[float, Point]]  # of open lines: how wi
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
 AXLE = 0.1  # of the extent of a round body: as near to its middle is an axle
+MARKED = (
+    2.0  # times as large as a body, at most, is an X on it: a larger one is two rods that cross under a pin
+)
 NO_BODY = 33.0  # nats that an X away from every body is unlikely: it would mean nothing
 ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on
 LARGER = 2.0  # times as large as an X is a line that it stands on, at least: else it is an asterisk
@@ -133,9 +136,9 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
                 gains[k] -= WRITTEN
         if c.kind == "cross":
             large = extent > LARGE * size
-            if any(bodies.under(c, extent)) or bodies.on_line(c, extent):
+            if any(bodies.under(c, extent, extent / MARKED)) or bodies.on_line(c, extent):
                 gains[k] += ANCHORS
-            elif not bodies.reached(c):
+            elif large or not bodies.reached(c):
                 gains[k] -= NO_BODY * (1 + large)
         elif c.kind == "arrow":
             gains[k] -= ANCHORS * any(bodies.under(c, extent))

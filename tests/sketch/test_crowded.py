@@ -159,3 +159,17 @@ def test_a_rod_that_is_pinned_to_a_wheel_is_not_what_that_turns_on(seed: int) ->
     axle, crank = circle((400, 360), 9, NEAT, rng), circle((485, 360), 8, NEAT, rng)
     joints = read(wheel, rod, axle, crank).scene.joints
     assert sorted((j.bodies for j in joints), key=str) == [("b1", "b2"), ("b1", None)]
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_two_rods_that_cross_under_a_pin_are_no_anchor_on_it(seed: int) -> None:
+    """A scissor lift: the long sides of its rods cross like the bars of an X, and end on the base."""
+    rng, hand = np.random.default_rng(seed), HANDS["shaky"]
+    a, b, c, d = box(640, 540, 398, 30, -0.464)
+    rods = [*line([d, a], hand, rng), *line([a, b], hand, rng), *line([b, c, d], hand, rng)]
+    a, b, c, d = box(640, 540, 398, 30, 0.464)
+    rods += [*line([d, a], hand, rng), *line([a, b], hand, rng), *line([b, c, d], hand, rng)]
+    base = outline(box(640, 660, 500, 56), hand, rng)
+    scene = read(base, rods, circle((640, 540), 8, hand, rng)).scene
+    assert len(scene.bodies) == 3
+    assert [joint.bodies for joint in scene.joints] == [("b2", "b3")]
