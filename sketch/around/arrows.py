@@ -30,6 +30,7 @@ PLACES = np.linspace(0, 1, 5)[:, None]  # shares of its length at which it is as
 # An arrow that begins at a body and points away says how that moves.
 AT_BODY = 0.25  # of its length: as near to the body is its tail
 AWAY = 0.7  # of its length: as much further from the body is its tip
+ALONG = 0.5  # likewise where another arrow may be gravity: a velocity is drawn along what a body slides on
 
 # Two arrows of one place, at a right angle, are a pair of axes.
 SAME_TAIL = 0.2  # of the shorter one's length: as near to each other are their tails
@@ -56,7 +57,16 @@ def pointing(
         return told, set(), proposing([], [])
     arrows = [proposed[n].candidates[k] for n, k in every]
     chosen = [(proposed[n].candidates[k], proposed[n].rows[k]) for n, k in likely]
-    losses = dict(zip(every, _losses(page, arrows, chosen), strict=True))
+    found = dict(zip(every, _losses(page, arrows, chosen), strict=True))
+    others = (proposed[n].candidates[k] for n, k in likely if found.get((n, k), (0.0, AWAY))[1] >= ALONG)
+    taken = {i for c in others if c.kind != "bar" for i in c.pieces}
+    most_away = AWAY
+    if any(
+        away < ALONG and taken.isdisjoint(proposed[n].candidates[k].pieces)
+        for (n, k), (_, away) in found.items()
+    ):
+        most_away = ALONG
+    losses = {pick: math.inf if away > most_away else loss for pick, (loss, away) in found.items()}
     other = {
         i
         for pick in likely
@@ -115,8 +125,9 @@ def prefer_arrow(
             told[n][k] += ONE_ARROW
 
 
-def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) -> list[float]:
-    """Nats that each of some arrows is rarer as gravity than by its ink; infinite if it means something else.
+def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) -> list[tuple[float, float]]:
+    """Nats that each of some arrows is rarer as gravity than by its ink; and how far it leads away from a body that it
+    begins at, as a share of its length, infinite if it means something else for sure.
 
     likely: what the ink makes likely, with where it lies, as of `Proposed`.
     """
@@ -135,21 +146,22 @@ def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) 
         if set(arrows[k].pieces).isdisjoint(bodies[b].pieces):
             apart[k].append(bodies[b])
     return [
-        math.inf if k in elsewhere else _beside(ends[k], long, apart[k]) if apart[k] else 0.0
+        (0.0, math.inf) if k in elsewhere else _beside(ends[k], long, apart[k]) if apart[k] else (0.0, 0.0)
         for k, long in enumerate(longs.tolist())
     ]
 
 
-def _beside(ends: Array, long: float, bodies: list[Fitted]) -> float:
-    """Nats that an arrow of some length is rarer for the bodies beside it; infinite if it begins at one."""
+def _beside(ends: Array, long: float, bodies: list[Fitted]) -> tuple[float, float]:
+    """Nats that an arrow of some length is rarer for the bodies beside it; and how far it leads away from one that it
+    begins at, as a share of its length."""
     tail, tip = ends
-    along, places = NEAR * long, tail + PLACES * (tip - tail)
+    along, away, places = NEAR * long, 0.0, tail + PLACES * (tip - tail)
     for body in bodies:
         first, *others = depths(places, body.outline)
-        if first < AT_BODY * long and others[-1] - first > AWAY * long:
-            return math.inf
+        if first < AT_BODY * long:
+            away = max(away, (others[-1] - first) / long)
         along = min(along, first, *others)
-    return BESIDE * (1 - max(along, 0.0) / (NEAR * long))
+    return BESIDE * (1 - max(along, 0.0) / (NEAR * long)), away
 
 
 def _axes(arrows: list[Fitted], ends: Array, longs: Array, likely: list[Fitted]) -> set[int]:

@@ -7,7 +7,7 @@ import pytest
 from pages import box, page, read
 
 from sketch.recognize import Recognition, recognize
-from sketch.synthetic import HANDS, arrow, circle, line, outline
+from sketch.synthetic import HANDS, Hand, arrow, circle, line, outline
 
 Array = np.ndarray
 HAND = HANDS["neat"]
@@ -107,3 +107,20 @@ def test_an_arrow_whose_barb_crosses_its_shaft_is_gravity(seed: int, tip: float)
     shaft = line([(1180, 100), (1182, 250)], HAND, rng)
     head = line([(1140, 194), (tip, 250), (1224, 194)], HAND, rng)
     assert is_down(read(scenery(rng), shaft, head))
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3, 4, 5, 7])
+def test_a_velocity_along_a_slope_is_no_gravity_beside_a_careless_arrow(seed: int) -> None:
+    """A crate on a wedge; what leads away from it aslant is gravity where there is no other arrow alone."""
+    rng, t = np.random.default_rng(seed), 0.5
+    along, up = np.array([np.cos(t), np.sin(t)]), np.array([np.sin(t), -np.cos(t)])
+    wedge = outline([(300, 300), (862, 607), (300, 607)], HAND, rng)
+    x, y = (300, 300) + 260 * along + 46 * up
+    crate = outline(box(float(x), float(y), 120, 84, t), HAND, rng)
+    tail = (x, y) + 50 * up + 10 * along
+    wall = outline(box(1190, 185, 60, 300), HAND, rng)
+    careless = Hand(tremor=0.02, drift=0.05, rounding=0.2, overshoot=0.08, hook=0.08)
+    moving = arrow((float(tail[0]), float(tail[1])), tuple((tail + 130 * along).tolist()), HAND, rng)
+    seen = read(wedge, crate, wall, moving, arrow((1100, 150), (1100, 220), careless, rng)).scene
+    assert len(seen.bodies) == 3
+    assert seen.gravity[1] < -8.5
