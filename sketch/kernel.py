@@ -20,6 +20,7 @@ __all__ = [
     "Point",
     "Shaft",
     "Strokes",
+    "bar",
     "beside",
     "course",
     "course_around",
@@ -45,13 +46,15 @@ __all__ = [
 SAMPLES, SIDES, BENDS, LEGS, PARTS = 48, 12, 6, 12, 8  # as in core/fit.h, core/strokes.c and core/cut.c
 COURSE = 32  # as in core/course.c
 ARROW_STROKES = 3  # of an arrow, at most: MOST_STROKES of core/arrow.c
+WHOLE_WAYS = 6  # in which one stroke may be a whole arrow, as core/arrow.c tries them
 LENT = 1000  # points of a side that is lent, at most: MOST_STEPS of core/lend.c
 _lib = library()
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
 _strokes = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_pointer] * 6)(("ink_strokes", _lib))
+_bar = ctypes.CFUNCTYPE(_int, *[_pointer] * 3, _int, _pointer)(("ink_bar", _lib))
 _crossing = ctypes.CFUNCTYPE(_int, *[_pointer] * 5)(("ink_crossing", _lib))
 _cross = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, _double, _pointer)(("ink_cross", _lib))
-_arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 5, _int, *[_pointer] * 2, _double, *[_pointer] * 2)(
+_arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 6, _int, *[_pointer] * 2, _double, *[_pointer] * 2)(
     ("ink_arrows", _lib)
 )
 _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
@@ -101,8 +104,9 @@ class Strokes(NamedTuple):
 class Shaft(NamedTuple):
     """What may be an arrow's shaft.
 
-    names: its stroke, then those that may be its head.  heads: how many of them it takes, at least and at most.
-    tail, toward: its tail, and a point toward its tip [pixels].
+    names: its stroke, then those that may be its head.  heads: how many of them it takes, at least and at most: none
+    where the stroke is the whole arrow.
+    tail, toward: its tail, and a point toward its tip [pixels]; of a whole arrow any.
     """
 
     names: tuple[int, ...]
@@ -166,6 +170,13 @@ def joined(a: Strokes, b: Strokes) -> Strokes:
     return Strokes(a.points[:0], a.ends[:0], rows, samples, residual, vertices)
 
 
+def bar(known: Places, name: int) -> tuple[int, float]:
+    """Of how many sides a stroke is as a bar, and the nats to say it so, besides how rare that is (see core/bar.c)."""
+    cost = _double()
+    sides = _bar(known.residual, known.vertices, known.facts, name, ctypes.byref(cost))
+    return sides, cost.value
+
+
 def crossing(bars: Array) -> tuple[float, float] | None:
     """Nats of how far from their middles two bars cross, given their ends, (4, 2), and of how unlike they are; None for
     no X (see core/cross.c)."""
@@ -200,7 +211,7 @@ def fit_arrows(known: Places, shafts: Sequence[Shaft], worse: float) -> list[Mar
         ends.append(len(which))
         heads += head
         given += tail + toward
-        most += len(names) ** 2
+        most += len(names) ** 2 if head[1] else WHOLE_WAYS
     count, whole = len(ends), len(which)
     numbers = (_int * (whole + 3 * count + ARROW_STROKES * most))(*which, *ends, *heads)
     out = np.empty(13 * most)
@@ -209,6 +220,7 @@ def fit_arrows(known: Places, shafts: Sequence[Shaft], worse: float) -> list[Mar
     found = _arrows(
         known.samples,
         known.measure,
+        known.vertices,
         known.facts,
         at,
         at + 4 * whole,

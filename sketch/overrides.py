@@ -69,7 +69,7 @@ def forced_reading(page: Page, strokes: tuple[int, ...], kind: str) -> Fitted | 
         return best[0]
     longest = max(pieces, key=lambda p: p.length)
     if kind == "bar":
-        return Fitted("bar", names, 0.0, _line(longest))
+        return Fitted("bar", names, 0.0, _line(page, longest))
     if kind == "anchor":
         return read_cross(page, names[:2]) or Fitted("cross", names, 0.0, _bars(pieces))
     return _arrow(page, names) or Fitted("arrow", names, 0.0, np.array(longest.ends))
@@ -80,9 +80,9 @@ def _arrow(page: Page, names: tuple[int, ...]) -> Fitted | None:
     return min((f for f in found if f.pieces == names), key=lambda f: f.cost, default=None)
 
 
-def _line(piece: Piece) -> np.ndarray:
+def _line(page: Page, piece: Piece) -> np.ndarray:
     """An open line as it was drawn: as a polyline, or of any course, or straight between its ends."""
-    bar = read_bar(piece)
+    bar = read_bar(page, piece)
     if bar is not None and bar.cost < piece.unread:
         return bar.outline
     course = line_of_any_course(piece)

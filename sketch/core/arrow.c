@@ -5,6 +5,7 @@
 #include <string.h>
 
 enum {
+    BENDS = 6, /* as in core/strokes.c */
     STEPS = 12, /* along each part of an arrow, to look for its ink */
     MOST_STROKES = 3 /* of an arrow: its shaft and two barbs */
 };
@@ -50,8 +51,8 @@ static int ends_there(const double *along, const double *across, int at, const d
 
 /* The arrow on `count` strokes; returns 0 where the ink has no head, a barb on each side that points back, or none that is
  * less than `most` nats unlike one. */
-static int fit_arrow(const double *samples, const double *length, const int32_t *names, int count, const double *tail,
-                     const double *toward, double most, Arrow *out) {
+INK_WIDE static int fit_arrow(const double *samples, const double *length, const int32_t *names, int count,
+                              const double *tail, const double *toward, double most, Arrow *out) {
     double *head = out->head, *lengths = out->lengths, *angles = out->angles, *ink = out->ink, *off = out->off;
     double ux = toward[0] - tail[0], uy = toward[1] - tail[1], l = hypot(ux, uy);
     if (l <= 0) return 0;
@@ -179,39 +180,52 @@ typedef struct {
     double figure[6][2]; /* a closed polygon along it: tail, tip, a barb's end, tip, the other's, tip [pixels] */
 } ReadArrow;
 
+/* Add the arrow on a group of strokes, if it is one that is not dear. Returns how many there are then. */
+static int add_arrow(const double *samples, const double *length, const Facts *facts, const int32_t *group, int count,
+                     const double *tail, const double *toward, double worse, ReadArrow *arrows, int32_t *groups,
+                     int found) {
+    double slack = worse - (RARE_ARROW + 4 * PARAMETER);
+    for (int k = 0; k < count; k++) slack += facts[group[k]].unread;
+    Arrow fit;
+    if (!fit_arrow(samples, length, group, count, tail, toward, slack, &fit)) return found;
+    ReadArrow *read = arrows + found;
+    read->cost = price(&fit, samples, facts, group, count, worse);
+    if (!isfinite(read->cost)) return found;
+    const double *along[] = {tail, fit.head, fit.head + 2, fit.head, fit.head + 4, fit.head};
+    for (int k = 0; k < 6; k++) memcpy(read->figure[k], along[k], sizeof read->figure[k]);
+    for (int k = 0; k < MOST_STROKES; k++) groups[MOST_STROKES * found + k] = k < count ? group[k] : -1;
+    return found + 1;
+}
+
 /* Arrows of shafts with their heads.
  *
  * samples: of every stroke of the page, (strokes, SAMPLES, 2) [pixels]; length: of each stroke, a row of `measure` apart
- * [pixels]; facts: of each.
+ * [pixels]; vertices: as of ink_strokes; facts: of each.
  * names: of each shaft its stroke, then those that may be its head, one shaft after another; ends: where each of `count`
- * shafts ends; heads: (count, 2): how many strokes may make the head, at least and at most, up to two; given: (count, 4): the
- * shaft's tail and a point on the way to the tip.
+ * shafts ends; heads: (count, 2): how many strokes may make the head, at least and at most, up to two: none where the stroke
+ * is the whole arrow; given: (count, 4): the shaft's tail and a point on the way to the tip, not of a whole arrow.
  * worse: nats more than their ink takes freely that arrows are looked for up to.
  * Out: arrows, in order; groups: (arrows, MOST_STROKES) the strokes of each, the shaft's first, -1 for none. There is room
  * for all combinations. Returns how many there are. */
-INK_API int32_t ink_arrows(const double *samples, const double *length, const Facts *facts, const int32_t *names,
-                           const int32_t *ends, int32_t count, const int32_t *heads, const double *given, double worse,
-                           ReadArrow *arrows, int32_t *groups) {
-    const double slack = worse - (RARE_ARROW + 4 * PARAMETER);
+INK_API int32_t ink_arrows(const double *samples, const double *length, const double *vertices, const Facts *facts,
+                           const int32_t *names, const int32_t *ends, int32_t count, const int32_t *heads,
+                           const double *given, double worse, ReadArrow *arrows, int32_t *groups) {
     int found = 0;
     for (int g = 0, first = 0; g < count; first = ends[g++]) {
-        const int32_t *name = names + first;
-        const double *tail = given + 4 * g;
-        int most = ends[g] - first;
-        for (int size = heads[2 * g]; size <= heads[2 * g + 1]; size++)
-            for (int a = 1; a < (size > 0 ? most : 2); a++)
-                for (int b = a + 1; b < (size > 1 ? most : a + 2); b++) {
-                    const int32_t group[] = {name[0], size > 0 ? name[a] : -1, size > 1 ? name[b] : -1};
-                    double limit = slack;
-                    for (int k = 0; k <= size; k++) limit += facts[group[k]].unread;
-                    Arrow fit;
-                    if (!fit_arrow(samples, length, group, size + 1, tail, tail + 2, limit, &fit)) continue;
-                    ReadArrow *read = arrows + found;
-                    read->cost = price(&fit, samples, facts, group, size + 1, worse);
-                    if (!isfinite(read->cost)) continue;
-                    const double *along[] = {tail, fit.head, fit.head + 2, fit.head, fit.head + 4, fit.head};
-                    for (int k = 0; k < 6; k++) memcpy(read->figure[k], along[k], sizeof read->figure[k]);
-                    memcpy(groups + MOST_STROKES * found++, group, sizeof group);
+        const int32_t *name = names + first, least = heads[2 * g], most = heads[2 * g + 1];
+        const int near = ends[g] - first;
+        for (int k = 3; k <= 5 && most == 0; k++) { /* its shaft is the first of some sides, or the last */
+            const double *v = vertices + 2 * (BENDS + 1) * ((BENDS + 1) * name[0] + k), *end = v + 2 * k;
+            found = add_arrow(samples, length, facts, name, 1, v, v + 2, worse, arrows, groups, found);
+            found = add_arrow(samples, length, facts, name, 1, end, end - 2, worse, arrows, groups, found);
+        }
+        for (int size = least > 1 ? least : 1; size <= most; size++)
+            for (int a = 1; a < near; a++)
+                for (int b = a + 1; b < (size > 1 ? near : a + 2); b++) {
+                    const int32_t group[] = {name[0], name[a], size > 1 ? name[b] : -1};
+                    const double *tail = given + 4 * g;
+                    found = add_arrow(samples, length, facts, group, size + 1, tail, tail + 2, worse, arrows, groups,
+                                      found);
                 }
     }
     return found;

@@ -19,8 +19,8 @@ INK_API int32_t ink_is_simple(const double *v, int32_t n) {
 }
 
 /* Mean squared distances of `count` strokes, those with these names, from a closed outline, (n, 2) [pixels]. */
-INK_API void ink_off_outline(const double *samples, const int32_t *names, int32_t count, const double *outline,
-                             int32_t n, double *off) {
+INK_WIDE INK_API void ink_off_outline(const double *samples, const int32_t *names, int32_t count, const double *outline,
+                                      int32_t n, double *off) {
     for (int k = 0; k < count; k++) {
         const double *p = samples + 2 * SAMPLES * names[k];
         double best[SAMPLES], sum = 0;

@@ -146,10 +146,7 @@ def _is_bar(p: Piece) -> bool:
 def shafts(page: Page, p: Piece) -> Iterator[Shaft]:
     """A piece as an arrow's shaft, with others that may be its head."""
     if p.length > WHOLE * p.extent:  # the whole arrow in one stroke
-        for k in (3, 4, 5):
-            v = p.corners(k)
-            yield Shaft((p.index,), (0, 0), _point(v[0]), _point(v[1]))
-            yield Shaft((p.index,), (0, 0), _point(v[k]), _point(v[k - 1]))
+        yield Shaft((p.index,), (0, 0), p.ends[0], p.ends[1])
     if p.length > BARBED * p.extent:
         return
     if p.straight > CORNERED:  # the shaft and one barb in one stroke

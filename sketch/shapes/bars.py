@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 
-from sketch.kernel import course, off_outline
+from sketch.kernel import bar, course, off_outline
 from sketch.page.pieces import Page, Piece
 from sketch.scoring import PARAMETER, Fitted, misfit_of
 from sketch.shapes.outlines import GAP, RETRACE
@@ -26,37 +25,23 @@ __all__ = [
 ]
 
 OPEN = 0.3  # of its length: how far apart the ends of an open line are at least
-MOST_BENDS = 5  # sides of a bar, at most
 # of its half extent: usual spread of a rod's ink; what is off by much more is bent on purpose
-STRAIGHT = 0.02
+STRAIGHT = 0.02  # as in core/bar.c
 LIFT = 0.1  # of a bar's length: what lacks at most where the pen was lifted within it
 ASIDE = 0.06  # of a bar's length: how far aside the pen went on, at most, after it was lifted
 AGAIN = 0.5  # of the shorter of two strokes: where so much of it lies along the other, one was gone over
 RING = 0.2  # of its length: how far apart the ends of a small ring are at most
-BEND = 3.0  # nats for each corner of a bar
-SHARP = 12.0  # nats that a right angle is rarer in a bar, one that folds it back twice that
 RARE = 25.0  # nats that an open line is rarer than an outline
 ANY_COURSE = 5.0  # nats that a line of any course is rarer than ink without a meaning
 THIN = 0.004  # of its length: what a line of any course is as thick as, at least
 
 
-def read_bar(piece: Piece) -> Fitted | None:
+def read_bar(page: Page, piece: Piece) -> Fitted | None:
     """An open line or polyline: a thin bar. None for a stroke whose ends meet."""
     if piece.gap < OPEN * piece.length:
         return None
-    best, segments = math.inf, 1
-    for k in range(1, MOST_BENDS + 1):
-        said = 2 * (k + 1) * PARAMETER
-        if said + BEND * (k - 1) > best:
-            break
-        bowed = 0.5 * piece.residual[k] / (STRAIGHT * max(piece.scale, 1e-9)) ** 2
-        cost = misfit_of(piece, piece.residual[k]) + bowed + said + BEND * (k - 1)
-        if cost > best:
-            continue
-        cost += SHARP * _turning(piece.corners(k))
-        if cost < best:
-            best, segments = cost, k
-    return _bar((piece.index,), best + RARE, piece.line(segments))
+    segments, cost = bar(page.places, piece.stroke)
+    return _bar((piece.index,), cost + RARE, piece.line(segments))
 
 
 def read_line(piece: Piece) -> Fitted | None:
@@ -148,9 +133,3 @@ def bars_again(page: Page, bar: Fitted, pieces: Sequence[Piece]) -> list[Fitted]
 
 def _bar(names: tuple[int, ...], cost: float, line: Array) -> Fitted:
     return Fitted("bar", names, cost, line, model=RARE + 2 * len(line) * PARAMETER)
-
-
-def _turning(v: list[list[float]]) -> float:
-    """How sharply a polyline turns: each corner by 1 - cos of its angle."""
-    sides = [complex(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(v)]
-    return sum(1 - (b * a.conjugate()).real / max(abs(a) * abs(b), 1e-12) for a, b in pairwise(sides))

@@ -66,7 +66,7 @@ def things_in(points: Array) -> list[Array]:
 
 def _meant(page: Page, p: Piece) -> Iterator[float]:
     """The nats to say a piece by itself as each thing that has a meaning."""
-    found = [read_bar(p)]
+    found = [read_bar(page, p)]
     if p.gap < APART * p.length:
         found += read_outline(page, [(p.index, False)])
     yield from (f.cost for f in found if f is not None)

@@ -263,7 +263,7 @@ class Proposals:
             out += fitted(
                 ((*(i for i, _ in way), j), ("borrowing", *way)), partial(read_borrowing, page, way, j, ink)
             )
-        out += _kept(read_bar(p)) + _kept(read_line(p)) + _kept(read_line_gone_over(p))
+        out += _kept(read_bar(page, p)) + _kept(read_line(p)) + _kept(read_line_gone_over(p))
         beside = list(in_line(page, p))
         for q in beside:
             for bar in _kept(read_bar_of_two(page, p, q)):
