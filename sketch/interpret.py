@@ -120,8 +120,9 @@ def _anchored(cross: Reading, bodies: Bodies) -> tuple[Drawn | None, list[Drawn]
 
     Of several that hold them it is the one drawn last; of none the one that its bars reach.
     """
-    (x, y), ends = cross.outline.mean(axis=0).tolist(), cross.outline.tolist()
-    reach = float(np.hypot(*np.ptp(cross.outline, axis=0))) / 2
+    ends, (xs, ys) = cross.outline.tolist(), cross.outline.T.tolist()
+    x, y = sum(xs) / len(xs), sum(ys) / len(ys)
+    reach = math.hypot(max(xs) - min(xs), max(ys) - min(ys)) / 2
     near = [(d.depth((x, y)), d) for d in bodies.near((x, y), reach) if d.reading.solid]
     over = [d for depth, d in near if depth < 0]
     if not over:

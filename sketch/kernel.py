@@ -63,7 +63,7 @@ _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _poin
 _words = ctypes.CFUNCTYPE(
     ctypes.c_int64, _pointer, _int, *[_pointer] * 3, _double, _double, _pointer, ctypes.c_int64
 )(("ink_words", _lib))
-_cut = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_cut", _lib))
+_cuts = ctypes.CFUNCTYPE(None, *[_pointer] * 2, _int, *[_pointer] * 3)(("ink_cuts", _lib))
 _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, _pointer)(
     ("ink_off_outline", _lib)
 )
@@ -261,12 +261,18 @@ def beside(boxes: Array, bodies: Array) -> list[list[int]]:
         room = count
 
 
-def cuts(points: Array) -> tuple[list[float], list[int]]:
-    """Where a stroke, (n, 2), may go on from one thing to the next: shares of its length, 0 and 1 among them, and
+def cuts(strokes: Sequence[Array]) -> list[tuple[list[float], list[int]]]:
+    """Where each stroke, (n, 2), may go on from one thing to the next: shares of its length, 0 and 1 among them, and
     what the parts between look like: 0 a loop, 1 a straight line, 2 a way (see core/cut.c)."""
-    shares, kinds = np.empty(PARTS + 1), np.empty(PARTS, dtype=np.int32)
-    count = _cut(address(points), len(points), address(shares), address(kinds))
-    return ([0.0, 1.0], [0]) if count < 2 else (shares[: count + 1].tolist(), kinds[:count].tolist())
+    count = len(strokes)
+    points = np.concatenate([np.empty((0, 2)), *strokes])
+    ends, parts = np.cumsum([len(s) for s in strokes], dtype=np.int32), np.empty(count, dtype=np.int32)
+    shares, kinds = np.empty((count, PARTS + 1)), np.empty((count, PARTS), dtype=np.int32)
+    _cuts(address(points), address(ends), count, address(shares), address(kinds), address(parts))
+    return [
+        (shares[k, : n + 1].tolist(), kinds[k, :n].tolist()) if n > 1 else ([0.0, 1.0], [0])
+        for k, n in enumerate(parts.tolist())
+    ]
 
 
 def course(points: Array, pen: float) -> Array | None:

@@ -55,6 +55,9 @@ FORCED = 1e6  # nats that a reading gains by having been said by the caller
 MANY = 8  # sides from which on nobody counts them
 
 
+_Gains = list[tuple[Proposed, list[float]]]  # of what some pieces proposed
+
+
 @dataclass(frozen=True, eq=False)
 class Recognition:
     """A sketch as it was understood: the scene and the readings that it was made from."""
@@ -132,6 +135,8 @@ class Recognizer:
         # of each the gains with all that is around, and what the search makes of these
         self._parts: dict[Proposed, tuple[list[float], Part]] = {}
         self._places: dict[Fitted, Placed] = {}
+        # of each reading, given what it and its rivals gain, its probability, theirs, and what it gains more
+        self._scores: dict[Fitted, tuple[float, _Gains, float, list[tuple[str, float]], float]] = {}
         self._strokes: dict[int, Stroke] = {}
         self._pieces: dict[int, list[int]] = {}  # of each stroke the things drawn in it: mostly one
         self._count = 0
@@ -144,7 +149,7 @@ class Recognizer:
 
     def _add(self, strokes: list[Stroke]) -> range:
         ink = [sampled(s.points) for s in strokes]
-        things = [things_in(points) for points, _ in ink]
+        things = things_in([points for points, _ in ink])
         given = [few for parts, (_, few) in zip(things, ink, strict=True) for _ in parts]
         new = iter(self._proposals.add([part for parts in things for part in parts], given))
         keys = range(self._count, self._count + len(strokes))
@@ -252,11 +257,17 @@ class Recognizer:
         for k in range(len(leads), len(best.proposed)):
             for fit in best.proposed[k].candidates:
                 further[fit.pieces].append(k)
+        known, self._scores = self._scores, {}
         readings = []
         for c in best.chosen:
             by = (*map(leads.__getitem__, c.fit.pieces), *further[c.fit.pieces])
-            rivals = _rivals(c, [(best.proposed[k], best.told[k]) for k in by])
-            score, others = scored(rivals)
+            gains = [(best.proposed[k], best.told[k]) for k in by]
+            there = known.get(c.fit)
+            if there is None or there[:2] != (c.gain, gains):
+                rivals = _rivals(c, gains)
+                there = c.gain, gains, *scored(rivals), min(rival.behind for rival in rivals)
+            self._scores[c.fit] = there
+            _, _, score, others, margin = there
             place = self._places[c.fit]
             readings.append(
                 Reading(
@@ -264,9 +275,9 @@ class Recognizer:
                     tuple(sorted({stroke[i] for i in c.fit.pieces})),
                     score,
                     place.outline,
-                    others,
+                    list(others),
                     c.gain,
-                    margin=min(rival.behind for rival in rivals),
+                    margin=margin,
                     rough=c.fit.rough,
                     error=place.error,
                 )

@@ -27,9 +27,10 @@ OFTEN = 5  # and one in so many tries the packing that the prices speak for
 CLOSE = 1e-6  # of gains: what is no more is no difference
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(eq=False, slots=True)  # frozen, it would take four times as long to make
 class Part:
-    """Groups that are all in one cluster, as one piece leads them: of each ink the best, with its gain (> 0).
+    """Groups that are all in one cluster, as one piece leads them: of each ink the best, with its gain (> 0). Never
+    changed once it is made.
 
     Parts with the same groups and gains are equal.
 
@@ -55,9 +56,11 @@ class Part:
 def part(groups: Sequence[Group], gains: Sequence[float]) -> Part:
     """The part of some groups; those that gain nothing are left out."""
     best: dict[Group, int] = {}
-    for k, (group, gain) in enumerate(zip(groups, gains, strict=True)):
-        if gain > 0 and (group not in best or gain > gains[best[group]]):
-            best[group] = k
+    for k, gain in enumerate(gains):
+        if gain > 0:
+            there = best.setdefault(groups[k], k)
+            if gain > gains[there]:
+                best[groups[k]] = k
     index, inks = tuple(best.values()), tuple(best)
     its = tuple(gains[k] for k in index)
     return Part(inks, its, index, tuple({i for group in inks for i in group}), hash((inks, its)))

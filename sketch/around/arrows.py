@@ -104,7 +104,8 @@ def likeliest_arrow(
     gain: Callable[[Pick], float],
 ) -> Pick | None:
     """The arrow that gains the most, of some: of those that are likely, or else of those on ink of nothing likelier."""
-    some = [pick for pick in arrows if pick in likely]
+    chosen = set(likely)
+    some = [pick for pick in arrows if pick in chosen]
     if not some:
         others = (proposed[n].candidates[k] for n, k in likely if told[n][k] > 0)
         taken = {i for c in others if c.kind != "bar" for i in c.pieces}

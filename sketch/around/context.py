@@ -95,10 +95,11 @@ class Context:
 def _held(proposed: list[Proposed], bodies: Around) -> dict[Fitted, int]:
     """How many ends of each open line that is proposed are in a ring among the likely bodies, if any is."""
     rings = [(*c.middle, row[4]) for c, row in bodies.items() if c.closed]
-    ends = [(p.candidates[k], at) for p in proposed for k, at in p.ends] if rings else []
+    ends = [p.ends for p in proposed if p.bars] if rings else []
     if not ends:
         return {}
-    places, (x, y, wide) = np.array([at for _, at in ends]), np.array(rings).T
+    lines = [p.candidates[k] for p in proposed for k in p.bars]
+    places, (x, y, wide) = np.concatenate(ends), np.array(rings).T
     along = places[:, 1] - places[:, 0]
     long = np.hypot(*along.T)[:, None]
     u, v = x - places[:, :1, 0], y - places[:, :1, 1]
@@ -106,7 +107,7 @@ def _held(proposed: list[Proposed], bodies: Around) -> dict[Fitted, int]:
     away2 = (places[:, :, :1] - x) ** 2 + (places[:, :, 1:] - y) ** 2
     its = (away2 < (REACH * wide) ** 2) & (through & (PINNED * wide < long))[:, None]
     held = its.any(axis=2).sum(axis=1).tolist()
-    return {line: count for (line, _), count in zip(ends, held, strict=True) if count}
+    return {line: count for line, count in zip(lines, held, strict=True) if count}
 
 
 def _beside(proposed: list[Proposed], bodies: Around) -> list[list[int]]:

@@ -60,7 +60,7 @@ def written(
     letters = marks.in_bodies() - remains
     pins = {  # among those, each as a ring
         i
-        for p, _ in likely
+        for p, _ in (likely if letters else ())
         for c, gain, row in zip(proposed[p].candidates, told[p], proposed[p].rows, strict=True)
         if gain > 0 and not letters.isdisjoint(c.pieces) and marks.joins(c, row[4])
         for i in c.pieces

@@ -4,6 +4,9 @@
 
 #include "fit.h"
 
+static const double CORNER = 4.0; /* nats to say a corner's coordinate, given those before: less than a free one */
+static const double GAP = 4.0;    /* nats for each observation that an outline lacks */
+
 /* Fits to a closed chain of ink, in its frame where not said otherwise. */
 typedef struct {
     double mean[2], to[4], back[4]; /* the frame: normal = to * (pixel - mean), pixel = mean + back * normal */

@@ -120,9 +120,10 @@ static void find_rows(const Way *w, Rows *rows) {
 
 /* xy: a stroke's points, (n, 2). Out: cuts, as shares of its length, PARTS at most, with 0 and 1; kinds: of the parts between
  * them. Returns how many parts there are; 1 where the stroke is better left whole. */
-INK_API int32_t ink_cut(const double *xy, int32_t n, double *cuts, int32_t *kinds) {
+static int32_t cut(const double *xy, int32_t n, double *cuts, int32_t *kinds) {
     Way w;
     Rows rows;
+    if (n < 2) return 1;
     int32_t end[1] = {n};
     double total = sample_parts(xy, end, 1, w.x, w.y, SAMPLES);
     w.step = total / SAMPLES;
@@ -145,4 +146,12 @@ INK_API int32_t ink_cut(const double *xy, int32_t n, double *cuts, int32_t *kind
         if (k < parts) cuts[k] = (j + 0.5) / SAMPLES;
     }
     return found ? parts : 1;
+}
+
+/* Likewise of `count` strokes; ends: where the points of each end. Out: for each cuts (PARTS + 1), kinds (PARTS), and how many
+ * parts there are. */
+INK_API void ink_cuts(const double *xy, const int32_t *ends, int32_t count, double *cuts, int32_t *kinds,
+                      int32_t *parts) {
+    for (int s = 0, first = 0; s < count; first = ends[s++])
+        parts[s] = cut(xy + 2 * first, ends[s] - first, cuts + (PARTS + 1) * s, kinds + PARTS * s);
 }

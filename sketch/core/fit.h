@@ -86,7 +86,13 @@ int ink_apart(const int32_t *rivals, const int32_t *from, int i, int j);
 
 int again_end(const double *p, int first, int step, int n, double total, double extent);
 
-double segment_distance2(double px, double py, const double a[2], const double b[2]);
+static inline double segment_distance2(double px, double py, const double a[2], const double b[2]) {
+    double dx = b[0] - a[0], dy = b[1] - a[1], l2 = dx * dx + dy * dy;
+    double t = l2 > 0 ? ((px - a[0]) * dx + (py - a[1]) * dy) / l2 : 0;
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    double ex = a[0] + t * dx - px, ey = a[1] + t * dy - py;
+    return ex * ex + ey * ey;
+}
 
 /* As said where they are. */
 INK_API int32_t ink_along(int32_t pieces, const double *boxes, const double *samples, const double *sizes,

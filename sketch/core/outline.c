@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+static const double CAP = 0.3; /* distances count up to this share of the radius: hooks and flourishes */
 enum { MOST = 7 }; /* sides of a polygon whose corners are told from something round */
 
 /* The frame: of second moments of the chain taken as a closed curve (the gaps bridged), so that a missing piece moves them
@@ -257,14 +258,10 @@ static void as_ellipse(Closed *out) {
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
  * least_axis: the frame's radii are at least this long [pixels]: below, the pen's own width is what one sees.
  * observations: how many independent ones the ink is worth.
- * side: nats to say one more side.
  * hopeless: a first split that costs more [nats] is not looked into further.
- * undrawn: nats for each observation that an outline lacks.
- * cap: distances count up to this, in the frame.
  * scratch: for the ink in its frame and a Lift for each part. */
-INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double cap,
-                        double observations, double side, double hopeless, double undrawn, Closed *out,
-                        double *scratch) {
+INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, double least_axis, double observations,
+                        double hopeless, Closed *out, double *scratch) {
     int n = part_end[parts - 1];
     normal_frame(xy, n, least_axis, out);
     const double *mean = out->mean, *to = out->to, *back = out->back;
@@ -283,15 +280,15 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     own_scale(z, part_end, parts, out->ink, factor);
     memcpy(factor + SAMPLES, factor, SAMPLES * sizeof *factor);
     Ink ink = {.factor = factor,
-               .cap2 = cap * cap,
+               .cap2 = CAP * CAP,
                .length = out->ink,
                .observations = observations,
-               .side = side,
+               .side = 2 * CORNER,
                .hopeless = hopeless,
                .lifts = lifts,
                .lift_count = parts,
                .gaps = out->gap,
-               .undrawn = undrawn * observations / fmax(out->ink, 1e-9)};
+               .undrawn = GAP * observations / fmax(out->ink, 1e-9)};
     fit_rounds(&r, &ink, out);
     as_ellipse(out);
     ink.round = fmin(out->conic_cost, out->circle_cost);

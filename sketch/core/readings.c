@@ -12,7 +12,6 @@ enum {
 
 static const double PI = 3.14159265358979323846;
 static const double ROUND = 31.0; /* nats that a round outline is rarer than its three parameters say */
-static const double CORNER = 4.0; /* nats to say a corner's coordinate, given those before: less than a free one */
 static const double TRIANGLE = 2.0; /* nats that triangles are commoner than other polygons, */
 static const double FOURSIDED = 4.0; /* and quadrilaterals */
 static const double IRREGULAR = 6.0; /* nats that a quadrilateral is rarer of which no two sides are parallel */
@@ -32,7 +31,6 @@ static const double FREEFORM =
     29.0; /* nats that an outline of any course, a hill or a cloud, is rarer than a polygon */
 static const double ARC = 7.0; /* nats to say each arc of such an outline: where along it one ends is hardly told */
 static const double WIDE = 0.25; /* of its ink: where more is missing, nobody can say which course it took */
-static const double GAP = 4.0; /* nats for each observation that an outline lacks */
 
 typedef struct {
     double cost; /* nats; infinite for none */

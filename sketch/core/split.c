@@ -6,14 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-double segment_distance2(double px, double py, const double a[2], const double b[2]) {
-    double dx = b[0] - a[0], dy = b[1] - a[1], l2 = dx * dx + dy * dy;
-    double t = l2 > 0 ? ((px - a[0]) * dx + (py - a[1]) * dy) / l2 : 0;
-    t = t < 0 ? 0 : t > 1 ? 1 : t;
-    double ex = a[0] + t * dx - px, ey = a[1] + t * dy - py;
-    return ex * ex + ey * ey;
-}
-
 double sample_parts(const double *xy, const int32_t *part_end, int parts, double *x, double *y, int n) {
     double total = 0;
     for (int p = 0, i = 0; p < parts; i = part_end[p++])

@@ -16,7 +16,7 @@ __all__ = ["ClosedFit", "ClosedReadings", "Few", "Said", "closed_readings", "fit
 
 LIFT = 6  # numbers that a struct Lift of core/outline.h takes
 _pointer, _double, _int = ctypes.c_void_p, ctypes.c_double, ctypes.c_int32
-_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 6, _pointer, _pointer)(
+_closed = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, *[_double] * 3, _pointer, _pointer)(
     ("ink_closed", library())
 )
 _readings = ctypes.CFUNCTYPE(None, *[_pointer] * 2, *[_double] * 2, *[_pointer] * 2)(
@@ -123,23 +123,17 @@ class ClosedReadings(ctypes.Structure):
     )
 
 
-def fit_closed(
-    parts: list[Array],
-    least_axis: float,
-    cap: float,
-    observations: float,
-    side: float,
-    hopeless: float,
-    undrawn: float,
-) -> ClosedFit:
-    """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another."""
+def fit_closed(parts: list[Array], least_axis: float, observations: float, hopeless: float) -> ClosedFit:
+    """Fit the closed chain of ink that `parts`, each (n, 2) in pixels, make one after another.
+
+    least_axis: what the frame's radii are at least [pixels].  observations: that the ink is worth.
+    hopeless: a first split that costs more [nats] is not looked into further.
+    """
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
     ends = (_int * len(parts))(*accumulate(map(len, parts)))
     fit = ClosedFit(np.empty(_CLOSED_NUMBERS + 2 * len(xy) + LIFT * len(parts)))
     at, scratch = fit.address, fit.address + 8 * _CLOSED_NUMBERS
-    _closed(
-        address(xy), ends, len(parts), least_axis, cap, observations, side, hopeless, undrawn, at, scratch
-    )
+    _closed(address(xy), ends, len(parts), least_axis, observations, hopeless, at, scratch)
     return fit
 
 

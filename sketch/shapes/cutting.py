@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,18 +24,21 @@ CUT = 10.0  # nats for each part beyond the first: going on to the next thing is
 LEAST = (20.0, 40.0)  # nats of the cheapest loop, and of the cheapest line, as core/cut.c numbers them
 
 
-def things_in(points: Array) -> list[Array]:
-    """The parts of a stroke, (n, 2) [pixels], that were drawn as things of their own; mostly itself alone.
+def things_in(strokes: Sequence[Array]) -> list[list[Array]]:
+    """The parts of each stroke, (n, 2) [pixels], that were drawn as things of their own; mostly itself alone."""
+    found = cuts(strokes)
+    return [
+        [points] if len(kinds) < 2 else _parts(np.ascontiguousarray(points), shares, kinds)
+        for points, (shares, kinds) in zip(strokes, found, strict=True)
+    ]
+
+
+def _parts(points: Array, shares: list[float], kinds: list[int]) -> list[Array]:
+    """The things in a stroke, given where it may go on from one to the next, as of `cuts`.
 
     It is cut where that says its ink in fewer nats than any reading of the whole. The ways between the parts
     are in none of them.
     """
-    if len(points) < 2:
-        return [points]
-    points = np.ascontiguousarray(points)
-    shares, kinds = cuts(points)
-    if len(kinds) < 2:
-        return [points]
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     at = np.searchsorted(along, np.array(shares) * along[-1])
     parts = [points[a : b + 1] for a, b, kind in zip(at, at[1:], kinds, strict=False) if kind != BETWEEN]

@@ -21,19 +21,17 @@ MOST, MANY = (
     7,
     12,
 )  # as in core/readings.c: polygons of more sides, and ink of more steps, are seen as they are
-CORNER = 4.0  # nats to say a corner's coordinate; as in core/readings.c
 EVEN_STEPS = 0.06  # of a step: how uneven they usually are along something round
 CORNERED = 0.12  # of a step: how uneven they usually are around something with corners
 STEPPING = 0.3  # of the logarithm of how uneven steps are: how much it differs from EVEN_STEPS' or CORNERED's
 CHANCE = 3.0  # nats that all corners lie halfway between points, or at them: steps are even then
 RETRACE = 1.0  # nats an observation of ink that was drawn already; as in core/fit.h
 SHARED = 10.0  # nats that an outline is rarer of which a side is another's
-GAP = 4.0  # nats for each observation that an outline lacks; as in core/readings.c
+GAP = 4.0  # nats for each observation that an outline lacks; as in core/closed.h
 SIDE = 0.18  # of an outline's ink where it is made even: a wider gap may be a short side that nobody drew
 TENTH = 0.12  # of an outline's ink as it is: a gap that may be such a side is no wider
 OPEN = 0.7  # of the nats of its free ink: an outline that is said in fewer lacks no such side
 CLEAN = 30.0  # nats that hardly any outline is said in fewer
-CAP = 0.3  # distances count up to this share of the radius: hooks and flourishes
 LEAST_AXIS = 0.002  # of the page: thinner outlines are judged as if they were this thick
 
 _NO_FEW = Few(0.0, MANY, 0.0, 0.0)  # of ink that came in many points
@@ -96,14 +94,14 @@ def _read(
     pieces = page.pieces
     free = sum([pieces[i].unread for i in names])
     least_axis = LEAST_AXIS * page.size
-    fit = rounded = fit_closed(parts, least_axis, CAP, count, 2 * CORNER, 2 * free, GAP)
+    fit = rounded = fit_closed(parts, least_axis, count, 2 * free)
     points, few = _few(parts, [pieces[i].given for i in names]), _NO_FEW
     if points:
         ellipse = fit.ellipse
         if ellipse is not None:
             # along something round the ink between two points is no chord, but an arc of it
             ink = [*(arced(its, *ellipse) for its in points), *parts[len(points) :]]
-            rounded = fit_closed(ink, least_axis, CAP, count, 2 * CORNER, 0.0, GAP)
+            rounded = fit_closed(ink, least_axis, count, 0.0)
         few = _stepping(points, rounded.ellipse, sum(map(len, parts)) - len(parts))
     found = closed_readings(fit, rounded, count, besides, few)
     its = found.scale, found.narrow, found.gap

@@ -51,7 +51,7 @@ Row = list[float]  # where a reading lies: least x and y, greatest x and y, exte
 Pick = tuple[int, int]  # what was proposed by which piece, and which of it
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(eq=False, slots=True)
 class Alone:
     """A piece by itself.
 
@@ -114,10 +114,9 @@ class Proposed:
         return [k for k, c in enumerate(self.candidates) if c.kind == "bar"]
 
     @lazy
-    def ends(self) -> list[tuple[int, list[list[float]]]]:
-        """The ends of each bar, with which of the candidates it is [pixels]."""
-        lines = ((k, self.candidates[k].outline) for k in self.bars)
-        return [(k, line[:: len(line) - 1].tolist()) for k, line in lines]
+    def ends(self) -> Array:
+        """The ends of each bar [pixels], (bars, 2, 2)."""
+        return np.array([self.candidates[k].outline[[0, -1]] for k in self.bars])
 
     @lazy
     def borrowing(self) -> bool:

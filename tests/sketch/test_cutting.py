@@ -68,11 +68,11 @@ def test_one_thing_stays_in_one_piece(name: str) -> None:
             *line([(100, 100), (400, 140)], hand, rng),
         ]
         for stroke in drawn:
-            assert len(things_in(stroke)) == 1
+            assert len(things_in([stroke])[0]) == 1
         twice = np.concatenate([drawn[1], drawn[1] + 2])
         assert len(read([twice]).scene.bodies) == 1
 
 
 def test_strokes_without_length_are_not_cut() -> None:
     for points in ([], [[1.0, 2.0]], [[1.0, 2.0]] * 5):
-        assert len(things_in(np.array(points).reshape(-1, 2))) == 1
+        assert len(things_in([np.array(points, dtype=float).reshape(-1, 2)])[0]) == 1

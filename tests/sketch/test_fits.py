@@ -21,7 +21,7 @@ def ring(vertices: list[tuple[float, float]], n: int = 100) -> np.ndarray:
 
 
 def fit(points: np.ndarray) -> object:
-    return fit_closed([points], 0.5, 0.3, 24.0, 8.0, math.inf, 4.0)
+    return fit_closed([points], 0.5, 24.0, math.inf)
 
 
 def nearest(found: np.ndarray, wanted: list[tuple[float, float]]) -> float:

@@ -80,5 +80,5 @@ def test_a_box_with_rounded_corners_has_four(size: tuple[float, float], rounding
 
 def test_the_turning_of_a_box_is_at_its_corners_and_that_of_a_hill_is_not() -> None:
     square = of_steps(np.array([*box(0, 0, 200, 150), (-100, -75)], dtype=float), 200)
-    assert fit_closed([square], 0.5, 0.3, 24.0, 8.0, np.inf, 4.0).turning[4] == pytest.approx(1.0, abs=0.02)
-    assert fit_closed([hill(200, 1.0)], 0.5, 0.3, 24.0, 8.0, np.inf, 4.0).turning[4] < 0.75
+    assert fit_closed([square], 0.5, 24.0, np.inf).turning[4] == pytest.approx(1.0, abs=0.02)
+    assert fit_closed([hill(200, 1.0)], 0.5, 24.0, np.inf).turning[4] < 0.75

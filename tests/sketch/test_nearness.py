@@ -226,7 +226,7 @@ def drawn(corners: Array) -> Array:
 def test_the_nearest_rectangle_goes_through_the_sides_middles(angle: float) -> None:
     turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     ink = drawn(np.array([[0.0, 0], [200, 0], [200, 110], [0, 90]]))
-    fit = fit_closed([(ink - (100, 50)) @ turn + 500], 0.5, 0.3, 30.0, 8.0, math.inf, 4.0)
+    fit = fit_closed([(ink - (100, 50)) @ turn + 500], 0.5, 30.0, math.inf)
     box = (fit.rectangle - 500) @ turn.T + (100, 50)
     sides = np.hypot(*(np.roll(box, -1, axis=0) - box).T)
     assert sorted(sides) == pytest.approx([100, 100, 200, 200], rel=0.03)
@@ -235,9 +235,7 @@ def test_the_nearest_rectangle_goes_through_the_sides_middles(angle: float) -> N
 
 
 def test_a_lozenge_is_far_from_every_rectangle() -> None:
-    fit = fit_closed(
-        [drawn(np.array([[0.0, 0], [100, 30], [200, 0], [100, -30]]))], 0.5, 0.3, 30.0, 8.0, math.inf, 4.0
-    )
+    fit = fit_closed([drawn(np.array([[0.0, 0], [100, 30], [200, 0], [100, -30]]))], 0.5, 30.0, math.inf)
     assert fit.extra > 0.1
 
 
