@@ -247,11 +247,12 @@ def _axle(wheel: Drawn, ring: Drawn, bodies: Bodies) -> list[Drawn]:
 
 
 def _joined(wheel: Drawn, other: Drawn, ring: Drawn, bodies: Bodies) -> bool:
-    """Whether a further ring, no larger than twice the size of one, reaches both a wheel and another body."""
+    """Whether a further ring, no larger than twice the size of one, reaches a wheel, and another body but for a
+    slip of the hand."""
     near = bodies.near(wheel.middle, wheel.radius)
     rings = (d for d in near if d.reading.kind in ("circle", "pivot") and d not in (ring, wheel))
     return any(
-        max(_off(wheel, further), _off(other, further)) < further.radius
+        _off(wheel, further) < further.radius and _off(other, further) < NEAR * further.radius
         for further in rings
         if further.size < 2 * ring.size
     )

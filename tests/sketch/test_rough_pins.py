@@ -115,13 +115,14 @@ def test_a_pin_may_join_two_lines(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_a_rod_that_ends_short_of_its_pin_is_none_that_the_wheel_turns_on(seed: int) -> None:
+@pytest.mark.parametrize("x", [326, 321])
+def test_a_rod_that_ends_short_of_its_pin_is_none_that_the_wheel_turns_on(x: int, seed: int) -> None:
     """A crank wheel nailed to the page: its rod begins beside the middle of the pin on the wheel's rim."""
     rng = np.random.default_rng(seed)
     wheel = circle((330, 400), 96, HAND, rng)
     block = outline(box(800, 400, 140, 90), HAND, rng)
     con_rod = outline(box(568, 370, 480, 26, 0.13), HAND, rng)
-    rings = [circle(at, 8, HAND, rng) for at in ((330, 400), (326, 338), (790, 400))]
+    rings = [circle(at, 8, HAND, rng) for at in ((330, 400), (x, 338), (790, 400))]
     scene = read(wheel, block, con_rod, *rings).scene
     assert sorted(tuple(map(str, joint.bodies)) for joint in scene.joints) == [
         ("b1", "None"),
