@@ -74,9 +74,7 @@ class Prices:
                 self.free[name] = p.unread - STRANGE + self._strange[name] + STRAIN * count
         for p in page.pieces.values():
             stretches = ways[p.index].ink
-            # what is no side is part of nothing smaller, unless its ends meet
-            size = p.scale if p.gap < pen or self._strangeness(p) else np.inf
-            self._scale.update((name, min(size, self._scale.get(name, np.inf))) for name in stretches)
+            self._scale.update((name, min(p.scale, self._scale.get(name, np.inf))) for name in stretches)
             if p.index < likeliest:
                 whole = max(sum(map(len, stretches.values())), 1)
                 for name, points in stretches.items():
