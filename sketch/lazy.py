@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 __all__ = ["lazy"]
 
-if TYPE_CHECKING:
+if TYPE_CHECKING or sys.version_info >= (3, 12):
     from functools import cached_property as lazy
 else:
 
     class lazy:
-        """As `functools.cached_property`, without its lock: before Python 3.12 that takes longer than most of what is
-        made, and a page asks for thousands."""
+        """As `functools.cached_property`, without the lock that it had before Python 3.12: that takes longer than
+        most of what is made, and a page asks for thousands."""
 
         def __init__(self, make: Callable[[Any], Any]) -> None:
             self.make, self.__doc__ = make, make.__doc__
