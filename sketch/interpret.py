@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from sim.scene import Joint, Scene, View
 from sketch.ink import Sketch
+from sketch.kept import Kept
 from sketch.reading import Reading
-from sketch.scene.bodies import Bodies, Drawn, draw_body, ids
-from sketch.scene.pivots import UNSURE, pivots
+from sketch.scene.bodies import Bodies, Drawn, body, drawn_body, ids
+from sketch.scene.pivots import UNSURE, Pivot, pivots
 from sketch.scene.tidy import close_gaps, straighten
+from sketch.typing import Point
 
 __all__ = ["interpret"]
 
@@ -29,41 +31,50 @@ ROUGH = 20.0  # nats that a polygon leaves to be said about its ink: nineteen in
 
 def interpret(
     sketch: Sketch,
+    keys: Sequence[int],
     readings: list[Reading],
     scale: float | None,
     gravity: tuple[float, float] | None,
     wide: float,
+    kept: Kept,
     tidy: bool = False,
 ) -> Scene:
     """The scene that readings make; a small circle that is a pivot becomes one in `readings`.
 
+    keys: of the sketch's strokes, of what is drawn later it is greater.
     wide: the longer side of the box around all that is drawn [pixels].
     scale: [pixels per metre], or None for the sketch's own.  gravity: [m/s²], y up, or None for the arrow's.
     tidy: whether to undo what the hand did to level sides, equal wheels and touching bodies.
     """
     notes = list(sketch.notes) + (straighten(readings) if tidy else [])
     view, longer = _view(sketch, scale)
-    drawn = [
-        draw_body(r, k, view.pixels_per_metre, PEN * longer)
-        for k, r in enumerate((r for r in readings if r.solid), start=1)
-    ]
-    bodies = Bodies(drawn)
-    fixed = {d for r in readings if r.kind == "anchor" if (d := _anchored(r, bodies)[0]) is not None}
-    joints = pivots(sketch, bodies, fixed, view.pixels_per_metre, PIN * max(longer, MARGIN * wide), notes)
-    drawn = [d for d in drawn if d.reading.solid]
-    _number(drawn, joints)
-    for reading in readings:
-        if reading.kind == "anchor":
-            _anchor(reading, bodies, notes)
+    ppm, pen = view.pixels_per_metre, PEN * longer
+    of: dict[Drawn, Reading] = {}
+    for r in readings:
+        if r.solid:
+            ink = tuple(sketch.strokes[s] for s in r.strokes)
+            d = kept(drawn_body, r.kind, r.forced, ink, keys[r.strokes[-1]], r.outline.tobytes(), ppm, pen)
+            of[d] = r
+    bodies = Bodies(list(of))
+    crosses = [r for r in readings if r.kind == "anchor"]
+    bodies.fixed = {on for r in crosses if (on := _anchored(r, bodies, kept)[0]) is not None}
+    numbers = {d: k for k, d in enumerate(bodies.drawn, start=1)}
+    names = {d: f"b{k}" for d, k in numbers.items()}
+    joints = pivots(bodies, of, names, PIN * max(longer, MARGIN * wide), notes, kept)
+    names = {d: f"b{k}" for k, d in enumerate((d for d in of if d not in bodies.pins), start=1)}
+    anchored = {on for r in crosses if (on := _anchor(r, bodies, names, notes, kept)) is not None}
     pull = _gravity(readings, notes) if gravity is None else gravity
+    lies: Mapping[Drawn, Drawn] = {}
     if tidy:
-        notes += close_gaps(drawn, joints, pull, view.pixels_per_metre)
-    notes += [text for d in drawn for text in _doubts(d)]
-    bars = [d for d in drawn if d.reading.kind == "bar"]
+        held = anchored.union(d for joint in joints for d in joint[:2] if d is not None)
+        lies, said = close_gaps(names, held, pull, ppm)
+        notes += said
+    notes += [text for d, name in names.items() for text in _doubts(of[d], name)]
+    bars = [d for d in names if d.kind == "bar"]
     if bars:
         what = "is an open line: a bar" if len(bars) == 1 else "are open lines: bars"
-        strokes = _strokes(s for d in bars for s in d.reading.strokes)
-        notes.append(f"{ids(bars)} ({strokes}) {what} as thick as the pen")
+        strokes = _strokes(s for d in bars for s in of[d].strokes)
+        notes.append(f"{ids([names[d] for d in bars])} ({strokes}) {what} as thick as the pen")
     read = Counter(s for r in readings if r.kind != "unread" for s in r.strokes)
     left = sorted(s for r in readings if r.kind == "unread" and r.forced is None for s in r.strokes)
     if left:
@@ -77,7 +88,13 @@ def interpret(
         notes.append(
             f"{several}: several things drawn without lifting the pen; the ways between them are left out"
         )
-    return Scene(bodies=[d.body for d in drawn], joints=joints, gravity=pull, view=view, notes=notes)
+    return Scene(
+        bodies=[body(lies.get(d, d), names[d], numbers[d], of[d], d in anchored) for d in names],
+        joints=[_joint(joint, names, ppm) for joint in joints],
+        gravity=pull,
+        view=view,
+        notes=notes,
+    )
 
 
 def _strokes(numbers: Iterable[int]) -> str:
@@ -102,47 +119,56 @@ def _extent(sketch: Sketch) -> float:
     return float(np.ptp(np.ascontiguousarray(ink.T), axis=1).max()) if len(ink) else 0.0
 
 
-def _number(drawn: list[Drawn], joints: list[Joint]) -> None:
-    """Name the bodies b1, b2, ... in the order of drawing, the pivots left out."""
-    names: dict[str | None, str | None] = {None: None}
-    for k, d in enumerate(drawn, start=1):
-        names[d.body.id] = f"b{k}"
-        d.body.id = f"b{k}"
-    for joint in joints:
-        joint.bodies = (names[joint.bodies[0]], names[joint.bodies[1]])
+def _joint(pivot: Pivot, names: Mapping[Drawn, str], ppm: float) -> Joint:
+    first, second, (x, y) = pivot
+    return Joint(bodies=(names[first], names[second] if second else None), position=(x / ppm, -(y / ppm)))
 
 
 # ---------------------------------------------------------------- anchors, gravity, doubts
 
 
-def _anchored(cross: Reading, bodies: Bodies) -> tuple[Drawn | None, list[Drawn], list[Drawn]]:
-    """The body that an X fixes, those that it lies over, and of these those that hold half of its bars' ends at least.
-
-    Of several that hold them it is the one drawn last; of none the one that its bars reach.
-    """
-    ends, (xs, ys) = cross.outline.tolist(), cross.outline.T.tolist()
-    x, y = sum(xs) / len(xs), sum(ys) / len(ys)
+def _anchored(cross: Reading, bodies: Bodies, kept: Kept) -> tuple[Drawn | None, list[Drawn], list[Drawn]]:
+    """The body that an X fixes, those that it lies over, and of these those that hold at least half of its bars'
+    ends."""
+    ends = tuple((x, y) for x, y in cross.outline.tolist())
+    xs, ys = zip(*ends, strict=True)
+    middle = sum(xs) / len(xs), sum(ys) / len(ys)
     reach = math.hypot(max(xs) - min(xs), max(ys) - min(ys)) / 2
-    near = [(d.depth((x, y)), d) for d in bodies.near((x, y), reach) if d.reading.solid]
-    over = [d for depth, d in near if depth < 0]
+    near = tuple(d for d in bodies.near(middle, reach) if d not in bodies.pins)
+    return kept(_held, ends, middle, reach, near)
+
+
+def _held(
+    ends: tuple[Point, ...], middle: Point, reach: float, near: tuple[Drawn, ...]
+) -> tuple[Drawn | None, list[Drawn], list[Drawn]]:
+    """Likewise, given an X's ends, its middle and its half extent, and the bodies near it.
+
+    Of several that hold it, it fixes the one drawn last; over none the one that its bars reach.
+    """
+    deep = [(d.depth(middle), d) for d in near]
+    over = [d for depth, d in deep if depth < 0]
     if not over:
-        depth, nearest = min(near, key=lambda t: t[0], default=(reach, None))
+        depth, nearest = min(deep, key=lambda t: t[0], default=(reach, None))
         over = [nearest] if nearest is not None and depth < reach else []
     # a rod that runs under an X, and holds none of it, is not what the X was drawn on
-    held = [d for d in over if 2 * sum(d.depth((x, y)) < 0 for x, y in ends) >= len(ends)]
-    return max(held or over, key=lambda d: d.reading.strokes[-1], default=None), over, held
+    held = [d for d in over if 2 * sum(d.depth(end) < 0 for end in ends) >= len(ends)]
+    return max(held or over, key=lambda d: d.last, default=None), over, held
 
 
-def _anchor(reading: Reading, bodies: Bodies, notes: list[str]) -> None:
-    """Fix the body that an X is drawn on."""
-    body, over, held = _anchored(reading, bodies)
-    if body is None:
+def _anchor(
+    reading: Reading, bodies: Bodies, names: Mapping[Drawn, str], notes: list[str], kept: Kept
+) -> Drawn | None:
+    """The body that an X is drawn on."""
+    fixed, over, held = _anchored(reading, bodies, kept)
+    if fixed is None:
         notes.append(f"the X of {reading.named} is over no body: it anchors nothing")
-        return
-    body.body.anchored = True
-    if len(over) > 1:
-        why = "in which it was drawn" if len(held) == 1 else "drawn last"
-        notes.append(f"the X of {reading.named} is over {ids(over)}: it anchors {body.body.id}, {why}")
+    elif len(over) > 1:
+        why, every = (
+            "in which it was drawn" if len(held) == 1 else "drawn last",
+            ids([names[d] for d in over]),
+        )
+        notes.append(f"the X of {reading.named} is over {every}: it anchors {names[fixed]}, {why}")
+    return fixed
 
 
 def _gravity(readings: list[Reading], notes: list[str]) -> tuple[float, float]:
@@ -159,20 +185,18 @@ def _gravity(readings: list[Reading], notes: list[str]) -> tuple[float, float]:
     return GRAVITY * dx / long, -GRAVITY * dy / long
 
 
-def _doubts(d: Drawn) -> list[str]:
+def _doubts(reading: Reading, name: str) -> list[str]:
     """What a person should look at: rivals that are nearly as likely, irregular outlines."""
-    reading, out = d.reading, []
+    out = []
     rivals = [(k, p) for k, p in reading.alternatives if p > UNSURE and k != "pivot"]
     if rivals and reading.forced is None:
         kind, score = rivals[0]
-        out.append(f"{d.body.id} ({reading.named}) may also be {_a(kind)} ({score:.0%})")
+        out.append(f"{name} ({reading.named}) may also be {_a(kind)} ({score:.0%})")
     if reading.kind == "polygon" and len(reading.outline) <= 12 and reading.rough > ROUGH:
         sides = len(reading.outline)
-        out.append(
-            f"{d.body.id} ({reading.named}) is no clean polygon: {sides} sides come nearest to its ink"
-        )
+        out.append(f"{name} ({reading.named}) is no clean polygon: {sides} sides come nearest to its ink")
     elif reading.kind == "polygon" and len(reading.outline) > 8:
-        out.append(f"{d.body.id} ({reading.named}) is an irregular outline: a polygon of many sides")
+        out.append(f"{name} ({reading.named}) is an irregular outline: a polygon of many sides")
     return out
 
 

@@ -27,6 +27,7 @@ from sketch.around.writing import written
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
 from sketch.interpret import interpret
+from sketch.kept import Kept
 from sketch.merging import Chosen, merged
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.page.pieces import Page
@@ -130,6 +131,7 @@ class Recognizer:
         self._proposals = Proposals(math.hypot(sketch.width or 0.0, sketch.height or 0.0))
         self._context = Context()
         self._letters = Letters()
+        self._kept = Kept()
         self._alone = Packing()
         self._together = Packing()
         # of each the gains with all that is around, and what the search makes of these
@@ -194,7 +196,8 @@ class Recognizer:
         _mark_forced(readings, forced)
         boxes = page.strokes.measure[list(page.pieces), 1:5]
         wide = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) if len(boxes) else 0.0
-        scene = interpret(sketch, readings, scale, gravity, wide, tidy)
+        scene = interpret(sketch, list(self._strokes), readings, scale, gravity, wide, self._kept, tidy)
+        self._kept.forget()
         left = tuple(sorted({stroke[i] for i in best.elsewhere - read}))
         if left:
             arrow = Reading("unread", left, 0.0, np.empty((0, 2))).named

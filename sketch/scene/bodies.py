@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -11,13 +12,14 @@ import numpy as np
 
 from sim.scene import Body, Circle, Polygon, Rectangle
 from sketch import kernel
+from sketch.ink import Stroke
 from sketch.kernel import depth, is_simple
 from sketch.lazy import lazy
 from sketch.page.near import Boxes, boxes_around
 from sketch.reading import Reading
-from sketch.typing import Array, Point
+from sketch.typing import Array, Box, Point
 
-__all__ = ["Bodies", "Drawn", "draw_body", "ids", "thick", "touch"]
+__all__ = ["Bodies", "Drawn", "body", "drawn_body", "ids", "thick", "touch"]
 
 # After Okabe and Ito, and Tol: told apart by colour-blind readers, and by their lightness in print.
 PALETTE = [
@@ -28,17 +30,29 @@ PALETTE = [
 
 @dataclass(eq=False)
 class Drawn:
-    """A body as it lies on the page.
+    """A body as it lies on the page. Never changed once it is made.
 
     Attributes:
-        outline: closed, of a bar as thick as the pen, [pixels], (n, 2).
+        kind, forced: of its reading.
+        ink: its strokes, in the order of drawing.  last: the last one's key: of what is drawn later it is greater.
+        line: its reading's outline [pixels], (n, 2).
+        outline: the same, closed, of a bar as thick as the pen.
+        box: around that: least x and y, greatest x and y.
         size: square root of the area; of a bar its length [pixels].
+        shape, position, angle: as of a `Body`.
     """
 
-    reading: Reading
+    kind: str
+    forced: str | None
+    ink: tuple[Stroke, ...]
+    last: int
+    line: Array
     outline: Array
+    box: Box
     size: float
-    body: Body
+    shape: Circle | Rectangle | Polygon
+    position: Point
+    angle: float
 
     @lazy
     def middle(self) -> Point:
@@ -46,7 +60,7 @@ class Drawn:
         x, y = (np.add.reduce(self.outline, axis=0) / len(self.outline)).tolist()
         return x, y
 
-    @property
+    @lazy
     def radius(self) -> float:
         """Of a circle, or of one as large [pixels]."""
         return self.size / math.sqrt(math.pi)
@@ -57,33 +71,56 @@ class Drawn:
 
 
 class Bodies:
-    """All bodies of a page, to be asked which of them are at a place."""
+    """Bodies in the order of drawing, to be asked which of them are at a place.
 
-    def __init__(self, drawn: list[Drawn]) -> None:
-        self.drawn = drawn
-        self._boxes = Boxes(boxes_around([d.outline for d in drawn]))
+    Attributes:
+        pins: of the circles, those that are pivots, and no bodies.
+        fixed: those that are anchored.
+    """
+
+    def __init__(
+        self, drawn: Sequence[Drawn], pins: Iterable[Drawn] = (), fixed: Iterable[Drawn] = ()
+    ) -> None:
+        self.drawn, self.pins, self.fixed = drawn, set(pins), set(fixed)
+        self._boxes = Boxes(np.array([d.box for d in drawn]).reshape(-1, 4))
 
     def near(self, at: Point, reach: float) -> list[Drawn]:
         """Those whose bounding box, widened by `reach` [pixels], has the point, in order of drawing."""
+        return [self.drawn[k] for k in self.numbers(at, reach)]
+
+    def numbers(self, at: Point, reach: float) -> list[int]:
+        """Likewise, as numbers."""
         x, y = at
-        return [self.drawn[k] for k in self._boxes.touching((x - reach, y - reach, x + reach, y + reach))]
+        return self._boxes.touching((x - reach, y - reach, x + reach, y + reach))
 
 
-def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float) -> Drawn:
-    """The body of a reading: x = px / ppm, y = -py / ppm; its vertices about its centroid."""
-    outline = np.ascontiguousarray(reading.outline)
-    if reading.kind == "bar":
-        outline = thick(outline, pen)
+def drawn_body(
+    kind: str,
+    forced: str | None,
+    ink: tuple[Stroke, ...],
+    last: int,
+    corners: bytes,
+    pixels_per_metre: float,
+    pen: float,
+) -> Drawn:
+    """The body of a reading: x = px / ppm, y = -py / ppm; its vertices about its centroid.
+
+    kind, forced, ink, last: as of `Drawn`.  corners: of the reading's outline, as an array has them.
+    """
+    line = np.frombuffer(corners).reshape(-1, 2).copy()
+    outline = line
+    if kind == "bar":
+        outline = thick(line, pen)
         if not is_simple(outline):  # a line that turns within its own thickness
-            outline = thick(reading.outline[[0, -1]], pen)
+            outline = thick(line[[0, -1]], pen)
     world = [complex(x, -y) / pixels_per_metre for x, y in outline.tolist()]
     angle = 0.0
     area, middle = _moments(world)
     shape: Circle | Rectangle | Polygon
-    if reading.kind == "circle":
+    if kind == "circle":
         middle = sum(world) / len(world)
         shape = Circle(sum(abs(z - middle) for z in world) / len(world))
-    elif len(world) == 4 and reading.kind in ("rectangle", "bar"):
+    elif len(world) == 4 and kind in ("rectangle", "bar"):
         middle = sum(world) / 4
         along = world[1] - world[0]
         sides = abs(along), abs(world[2] - world[1])
@@ -96,21 +133,24 @@ def draw_body(reading: Reading, number: int, pixels_per_metre: float, pen: float
         if area < 0:
             local.reverse()
         shape = Polygon(local)
-    body = Body(
-        id=f"b{number}",
-        shape=shape,
-        position=(middle.real, middle.imag),
-        angle=angle,
+    size = float(np.ptp(outline, axis=0).max()) if kind == "bar" else pixels_per_metre * math.sqrt(abs(area))
+    ((x0, y0, x1, y1),) = boxes_around([outline]).tolist()
+    position = middle.real, middle.imag
+    return Drawn(kind, forced, ink, last, line, outline, (x0, y0, x1, y1), size, shape, position, angle)
+
+
+def body(d: Drawn, name: str, number: int, reading: Reading, anchored: bool) -> Body:
+    """What is drawn, as a body of a scene. number: among all that may be one, from 1."""
+    return Body(
+        id=name,
+        shape=Polygon(list(d.shape.vertices)) if isinstance(d.shape, Polygon) else d.shape,
+        position=d.position,
+        angle=d.angle,
+        anchored=anchored,
         color=PALETTE[(number - 1) % len(PALETTE)],
         strokes=list(reading.strokes),
         score=round(reading.score, 4),
     )
-    size = (
-        float(np.ptp(outline, axis=0).max())
-        if reading.kind == "bar"
-        else pixels_per_metre * math.sqrt(abs(area))
-    )
-    return Drawn(reading, outline, size, body)
 
 
 def touch(a: Drawn, b: Drawn, ring: Drawn) -> bool:
@@ -118,9 +158,9 @@ def touch(a: Drawn, b: Drawn, ring: Drawn) -> bool:
     return kernel.touch(a.outline, b.outline, ring.middle, 5 * ring.radius, ring.radius)
 
 
-def ids(bodies: list[Drawn]) -> str:
+def ids(names: Sequence[str]) -> str:
     """Bodies as a note names them."""
-    *most, last = [d.body.id for d in bodies]
+    *most, last = names
     return f"{', '.join(most)} and {last}" if most else last
 
 

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Set
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from sim.scene import Joint
 from sketch.around.pins import is_on_line
-from sketch.ink import Sketch
+from sketch.kept import Kept
 from sketch.kernel import depth
+from sketch.reading import Reading
 from sketch.scene.bodies import Bodies, Drawn, ids, touch
+from sketch.typing import Point
 
-__all__ = ["UNSURE", "pivots"]
+__all__ = ["UNSURE", "Pivot", "pivots"]
 
 # radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
 JOINS = 0.3
@@ -27,73 +29,108 @@ CUT = 0.85  # of a wheel's radius, from its centre to a body that it overlaps to
 UNSURE = 0.2  # a reading with a rival of this probability is named in the notes
 
 
-class _Pin(NamedTuple):
-    """A ring that is a pivot: of the one or two bodies `under` it, and of `further` ones that it goes through."""
+@dataclass(eq=False)
+class _Pin:
+    """A ring that is a pivot: of the one or two bodies `under` it, and of `further` ones that it goes through.
+
+    at: where [pixels].
+    """
 
     ring: Drawn
-    under: list[Drawn]
-    further: list[Drawn]
-    joint: Joint
+    under: tuple[Drawn, ...]
+    further: tuple[Drawn, ...]
+    at: Point
+
+
+class Pivot(NamedTuple):
+    """A joint of two bodies, or of one and the page.  at: where [pixels]."""
+
+    first: Drawn
+    second: Drawn | None
+    at: Point
 
 
 def pivots(
-    sketch: Sketch, bodies: Bodies, fixed: Set[Drawn], pixels_per_metre: float, pin: float, notes: list[str]
-) -> list[Joint]:
+    bodies: Bodies,
+    readings: Mapping[Drawn, Reading],
+    names: Mapping[Drawn, str],
+    pin: float,
+    notes: list[str],
+    kept: Kept,
+) -> list[Pivot]:
     """Small circles over bodies that overlap, or over one beside which they are small, become pivots.
 
-    fixed: those that are anchored.  pin: radius that one to the background, or of an open line, hardly exceeds
-    [pixels].  Returns the joints in the order in which their circles were drawn.
+    pin: radius that one to the background, or of an open line, hardly exceeds [pixels].  Returns the joints in the
+    order in which their circles were drawn.
     """
-    circles = [d for d in bodies.drawn if d.reading.kind == "circle"]
-    pins: list[_Pin] = []
+    circles = [d for d in bodies.drawn if d.kind == "circle"]
+    pins: dict[Drawn, _Pin] = {}
     for ring in sorted(circles, key=lambda d: -d.size):  # so that a pivot is asked of bodies, not of pivots
-        if ring.reading.forced in ("ball", "circle"):
+        if ring.forced in ("ball", "circle"):
             continue
-        under, further, odds = _odds(sketch, ring, bodies, fixed, pin)
-        if not under or not _is_pivot(ring, under, odds, notes):
+        near = _around(ring, bodies)
+        its = tuple(d for d in near if d in bodies.pins), tuple(d for d in near if d in bodies.fixed)
+        under, further, odds = kept(_odds, ring, near, *its, pin)
+        if not under or not _is_pivot(readings[ring], [names[d] for d in under], odds, notes):
             continue
-        x, y = (at / pixels_per_metre for at in ring.middle)
-        again = [p.joint for p in pins if _is_again(p, ring, under)]
-        for joint in again:  # the smaller, which comes later, says better where
-            joint.position = (x, -y)
+        bodies.pins.add(ring)
+        again = [p for d in its[0] if (p := pins.get(d)) and _is_again(p, ring, under)]
+        for p in again:  # the smaller, which comes later, says better where
+            p.at = ring.middle
         if again:
             continue
         if len(under) == 1 and odds < 1 - UNSURE:
-            notes.append(_either(ring, f"a pivot of {ids(under)} to the page", "a ball"))
-        pair = (under[0].body.id, under[1].body.id if len(under) == 2 else None)
-        pins.append(_Pin(ring, under, further, Joint(bodies=pair, position=(x, -y))))
-    pins.sort(key=lambda p: bodies.drawn.index(p.ring))
-    return [p.joint for p in pins] + _through(pins, bodies)
+            notes.append(_either(readings[ring], f"a pivot of {names[under[0]]} to the page", "a ball"))
+        pins[ring] = _Pin(ring, under, further, ring.middle)
+    order = {d: k for k, d in enumerate(bodies.drawn)}
+    by_drawing = sorted(pins.values(), key=lambda p: order[p.ring])
+    joints = [Pivot(p.under[0], p.under[1] if len(p.under) == 2 else None, p.at) for p in by_drawing]
+    return joints + _through(by_drawing, order)
+
+
+def _around(ring: Drawn, bodies: Bodies) -> tuple[Drawn, ...]:
+    """The bodies that say whether a ring is a pivot, and of what, in the order of drawing: those near it, and near a
+    wheel that it is at the centre of."""
+    found = bodies.numbers(ring.middle, AROUND * ring.radius)
+    for wheel in (bodies.drawn[k] for k in found):
+        if _is_at_centre(ring, wheel) and wheel.radius > ring.radius:
+            found = sorted({*found, *bodies.numbers(wheel.middle, (JOINS + CUT) * wheel.radius)})
+    return tuple(bodies.drawn[k] for k in found)
 
 
 def _odds(
-    sketch: Sketch, ring: Drawn, bodies: Bodies, fixed: Set[Drawn], pin: float
-) -> tuple[list[Drawn], list[Drawn], float]:
-    """The bodies under a ring, as of `_under`, and how likely it is a pivot."""
-    under, further, odds = _under(sketch, ring, bodies, fixed)
-    if ring.reading.forced == "pivot":
-        return under or [d for _, d in _near(ring, NEAR * ring.radius, bodies)][:1], further, 1.0
-    if len(under) == 1 or any(d.reading.kind == "bar" for d in under):
+    ring: Drawn, around: tuple[Drawn, ...], pins: tuple[Drawn, ...], fixed: tuple[Drawn, ...], pin: float
+) -> tuple[tuple[Drawn, ...], tuple[Drawn, ...], float]:
+    """The bodies under a ring, as of `_under`, and how likely it is a pivot.
+
+    around: as of `_around`.  pins, fixed: which of these are pivots already, and which are anchored.
+    """
+    bodies = Bodies(around, pins, fixed)
+    under, further, odds = _under(ring, bodies)
+    if ring.forced == "pivot":
+        under, odds = under or [d for _, d in _near(ring, NEAR * ring.radius, bodies)][:1], 1.0
+        return tuple(under), tuple(further), odds
+    if len(under) == 1 or any(d.kind == "bar" for d in under):
         odds *= 1 / (1 + (ring.radius / pin) ** 6)
     if _pinned(ring, bodies):
         odds /= odds + (1 - odds) * WHEEL
-    return under, further, odds
+    return tuple(under), tuple(further), odds
 
 
-def _is_pivot(ring: Drawn, under: list[Drawn], odds: float, notes: list[str]) -> bool:
+def _is_pivot(reading: Reading, under: Sequence[str], odds: float, notes: list[str]) -> bool:
     """Whether a ring is taken for a pivot; its reading says so, and what else it may be."""
-    reading, is_pivot = ring.reading, odds >= 0.5
+    is_pivot = odds >= 0.5
     rival = ("ball", 1 - odds) if is_pivot else ("pivot", odds)
     reading.alternatives = sorted([*reading.alternatives, rival], key=lambda t: -t[1])
     if is_pivot:
         reading.kind = "pivot"
         reading.score *= odds
     elif len(under) == 1 and odds > UNSURE:
-        notes.append(_either(ring, f"a ball in front of {ids(under)}", "a pivot to the page"))
+        notes.append(_either(reading, f"a ball in front of {ids(under)}", "a pivot to the page"))
     return is_pivot
 
 
-def _is_again(pin: _Pin, ring: Drawn, under: list[Drawn]) -> bool:
+def _is_again(pin: _Pin, ring: Drawn, under: tuple[Drawn, ...]) -> bool:
     """Whether a ring is a pivot drawn again: one that overlaps a ring over the same bodies, or is within one."""
     r = pin.ring.radius
     return math.dist(pin.ring.middle, ring.middle) < (
@@ -101,20 +138,20 @@ def _is_again(pin: _Pin, ring: Drawn, under: list[Drawn]) -> bool:
     )
 
 
-def _through(pins: list[_Pin], bodies: Bodies) -> list[Joint]:
+def _through(pins: list[_Pin], order: Mapping[Drawn, int]) -> list[Pivot]:
     """The joints with what pivots go through besides the two bodies in front."""
-    joints: list[Joint] = []
-    pairs = {frozenset(pin.joint.bodies) for pin in pins}
+    joints: list[Pivot] = []
+    pairs = {frozenset(pin.under) for pin in pins}
     for pin in pins:
         through = list(pin.under)
         for d in pin.further:
             # a rod on the rim of a wheel turns on the wheel, not on the frame behind that the wheel turns on
-            if any({d.body.id, other.body.id} in pairs for other in through):
+            if any({d, other} in pairs for other in through):
                 continue
             # each pair is joined, as only those that are may overlap at the pin
             for other in through:
-                a, b = sorted((other, d), key=bodies.drawn.index)
-                joints.append(Joint(bodies=(a.body.id, b.body.id), position=pin.joint.position))
+                a, b = sorted((other, d), key=order.__getitem__)
+                joints.append(Pivot(a, b, pin.at))
             through.append(d)
     return joints
 
@@ -124,16 +161,15 @@ def _pinned(ring: Drawn, bodies: Bodies) -> bool:
     reach = JOINS * ring.radius
     return any(
         d is not ring
-        and d.reading.kind == "circle"
+        and d.kind == "circle"
+        and d not in bodies.pins
         and d.radius < 2 * reach
         and math.dist(ring.middle, d.middle) < reach
         for d in bodies.near(ring.middle, reach)
     )
 
 
-def _under(
-    sketch: Sketch, ring: Drawn, bodies: Bodies, fixed: Set[Drawn]
-) -> tuple[list[Drawn], list[Drawn], float]:
+def _under(ring: Drawn, bodies: Bodies) -> tuple[list[Drawn], list[Drawn], float]:
     """The two bodies that a ring would be a pivot of, or one, in order of drawing; further ones that it goes through;
     and how likely it is a pivot rather than a ball.
 
@@ -146,7 +182,7 @@ def _under(
     further: list[Drawn] = []
     if over:
         (_, first), *rest = near
-        missed = [d for depth, d in rest if depth > 0 and _off_ink(sketch, d, ring) < radius]
+        missed = [d for depth, d in rest if depth > 0 and _off_ink(d, ring) < radius]
         first, *others = every = _foremost([first, *(d for depth, d in rest if depth <= 0)], missed)
         further = [
             d for d in others[1:] if d not in missed and not any(_holds(d, e) for e in every if e is not d)
@@ -154,7 +190,7 @@ def _under(
         reach = NEAR * radius
     else:
         rest = [(depth, d) for depth, d in near if depth < NEAR * radius and radius < NAILS * d.size]
-        off = {d: min(depth, _off_ink(sketch, d, ring)) for depth, d in rest} if len(rest) > 1 else {}
+        off = {d: min(depth, _off_ink(d, ring)) for depth, d in rest} if len(rest) > 1 else {}
         first = min(off, key=lambda d: off[d], default=ring)
         if off.get(first, math.inf) > ON * radius:
             return [], [], 0.0
@@ -162,7 +198,7 @@ def _under(
     if not others:
         others = [d for depth, d in rest if d is not first and depth < reach and touch(first, d, ring)]
     if over and not others:
-        others = _axle(first, ring, bodies) or _missed(first, rest, ring, fixed)
+        others = _axle(first, ring, bodies) or _missed(first, rest, ring, bodies.fixed)
     under = [first, *others[:1]]
     if not over and len(under) == 1:
         return [], [], 0.0
@@ -178,11 +214,11 @@ def _missed(first: Drawn, near: list[tuple[float, Drawn]], ring: Drawn, fixed: S
     and no rod ends beside a ring by chance.
     """
     found = [d for depth, d in near if depth < NEAR * ring.radius and (d in fixed) != (first in fixed)]
-    return found or [d for _, d in near if d.reading.kind == "bar" and _ends_near(d, ring)]
+    return found or [d for _, d in near if d.kind == "bar" and _ends_near(d, ring)]
 
 
 def _ends_near(bar: Drawn, ring: Drawn) -> bool:
-    return bool(np.hypot(*(bar.reading.outline[[0, -1]] - ring.middle).T).min() < NEAR * ring.radius)
+    return bool(np.hypot(*(bar.line[[0, -1]] - ring.middle).T).min() < NEAR * ring.radius)
 
 
 def _foremost(over: list[Drawn], missed: list[Drawn]) -> list[Drawn]:
@@ -195,7 +231,7 @@ def _foremost(over: list[Drawn], missed: list[Drawn]) -> list[Drawn]:
     if len(every) < 3:
         return every
     holds = {d: sum(_holds(d, e) for e in every if e is not d) for d in every}
-    return sorted(every, key=lambda d: (holds[d], d in missed, -d.reading.strokes[-1]))
+    return sorted(every, key=lambda d: (holds[d], d in missed, -d.last))
 
 
 def _holds(d: Drawn, other: Drawn) -> bool:
@@ -209,7 +245,7 @@ def _near(ring: Drawn, reach: float, bodies: Bodies) -> list[tuple[float, Drawn]
     large = [
         d
         for d in bodies.near(ring.middle, reach)
-        if d is not ring and d.reading.solid and ring.radius < 2 * JOINS * d.size
+        if d is not ring and d not in bodies.pins and ring.radius < 2 * JOINS * d.size
     ]
     near = [(off, d) for d in large if (off := _off(d, ring)) < reach]
     return sorted(near, key=lambda t: t[0])
@@ -217,8 +253,8 @@ def _near(ring: Drawn, reach: float, bodies: Bodies) -> list[tuple[float, Drawn]
 
 def _off(d: Drawn, ring: Drawn) -> float:
     """How far a ring's middle is from a body [pixels], negative inside; 0 from an open line that it is over."""
-    depth, line = d.depth(ring.middle), d.reading.outline
-    if d.reading.kind == "bar" and depth > 0:
+    depth, line = d.depth(ring.middle), d.line
+    if d.kind == "bar" and depth > 0:
         long = float(np.hypot(*np.ptp(line, axis=0)))
         depth *= not is_on_line(ring.middle, math.sqrt(8) * ring.radius, line, long)
     return depth
@@ -231,14 +267,14 @@ def _axle(wheel: Drawn, ring: Drawn, bodies: Bodies) -> list[Drawn]:
     that it turns on.
     """
     deep = CUT * wheel.radius
-    if wheel.reading.kind != "circle" or math.dist(ring.middle, wheel.middle) > JOINS * wheel.radius:
+    if not _is_at_centre(ring, wheel):
         return []
     others = [
         (d.depth(ring.middle), d)
         for d in bodies.near(ring.middle, deep)
         if d is not wheel
         and d is not ring
-        and d.reading.solid
+        and d not in bodies.pins
         and wheel.radius < 2 * d.size
         and ring.radius < 2 * JOINS * d.size
     ]
@@ -246,11 +282,15 @@ def _axle(wheel: Drawn, ring: Drawn, bodies: Bodies) -> list[Drawn]:
     return [d for depth, d in by_depth if depth < deep and not _joined(wheel, d, ring, bodies)]
 
 
+def _is_at_centre(ring: Drawn, wheel: Drawn) -> bool:
+    return wheel.kind == "circle" and math.dist(ring.middle, wheel.middle) <= JOINS * wheel.radius
+
+
 def _joined(wheel: Drawn, other: Drawn, ring: Drawn, bodies: Bodies) -> bool:
     """Whether a further ring, no larger than twice the size of one, reaches a wheel, and another body but for a
     slip of the hand."""
     near = bodies.near(wheel.middle, wheel.radius)
-    rings = (d for d in near if d.reading.kind in ("circle", "pivot") and d not in (ring, wheel))
+    rings = (d for d in near if d.kind == "circle" and d is not ring and d is not wheel)
     return any(
         _off(wheel, further) < further.radius and _off(other, further) < NEAR * further.radius
         for further in rings
@@ -258,13 +298,13 @@ def _joined(wheel: Drawn, other: Drawn, ring: Drawn, bodies: Bodies) -> bool:
     )
 
 
-def _off_ink(sketch: Sketch, d: Drawn, ring: Drawn) -> float:
+def _off_ink(d: Drawn, ring: Drawn) -> float:
     """The distance of a ring's middle from the ink that a body was drawn with [pixels]."""
     x, y = ring.middle
-    inks = (sketch.strokes[s].points[:, :2] for s in d.reading.strokes)
+    inks = (stroke.points[:, :2] for stroke in d.ink)
     there_and_back = (np.concatenate([ink, ink[-2:0:-1]]) for ink in inks)  # closed, around nothing
     return min((abs(depth(x, y, ink)) for ink in there_and_back), default=math.inf)
 
 
-def _either(ring: Drawn, taken: str, other: str) -> str:
-    return f"the small circle of {ring.reading.named} was taken for {taken}; it may be {other}"
+def _either(ring: Reading, taken: str, other: str) -> str:
+    return f"the small circle of {ring.named} was taken for {taken}; it may be {other}"

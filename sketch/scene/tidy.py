@@ -6,12 +6,12 @@ Only where it was asked for, and every change is said in a note. Pivots stay whe
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Set
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from sim.scene import Joint
 from sketch.kernel import is_simple
 from sketch.reading import Reading
 from sketch.scene.bodies import Drawn
@@ -81,35 +81,37 @@ def _radius(ring: Array) -> float:
     return float(np.hypot(*(ring - ring.mean(axis=0)).T).mean())
 
 
-def close_gaps(drawn: list[Drawn], joints: list[Joint], pull: tuple[float, float], ppm: float) -> list[str]:
-    """Move bodies that nearly touch another until they do; those that are anchored or on a pivot stay.
+def close_gaps(
+    names: Mapping[Drawn, str], held: Set[Drawn], pull: tuple[float, float], ppm: float
+) -> tuple[dict[Drawn, Drawn], list[str]]:
+    """Move bodies that nearly touch another until they do, but those that are held: each as it lies then; and what was
+    done, a line a body.
 
     What stands on others moves after them, if it was drawn close to them, as gravity `pull` (y up) goes.
     ppm: [pixels per metre].
     """
-    held = {name for joint in joints for name in joint.bodies}
     down = np.array([pull[0], -pull[1]])
-    order = sorted(drawn, key=lambda d: -float((d.outline @ down).max()))
-    settled = [d for d in order if d.body.anchored or d.body.id in held]
-    drawn_at = {d: replace(d) for d in drawn}
+    order = sorted(names, key=lambda d: -float((d.outline @ down).max()))
+    settled = [d for d in order if d in held]
+    lies = {d: d for d in names}
     notes = []
     for d in order:
-        if d in settled:
+        if d in held:
             continue
         near = []
         for other in settled:
-            step = _gap(d, other)
+            step = _gap(d, lies[other])
             far = float(np.hypot(*step))
-            if 0 < far < REACH * d.size and not _inside(d, other) and _close(drawn_at[d], drawn_at[other]):
+            if 0 < far < REACH * d.size and not _inside(d, lies[other]) and _close(d, other):
                 near.append((far, step, other))
         if near:
             far, step, other = min(near, key=lambda t: t[0])
-            d.outline = d.outline + step
-            x, y = d.body.position
-            d.body.position = (x + float(step[0]) / ppm, y - float(step[1]) / ppm)
-            notes.append(f"tidied: {d.body.id} touches {other.body.id}, moved by {far:.1f} pixels")
+            x, y = d.position
+            position = x + float(step[0]) / ppm, y - float(step[1]) / ppm
+            lies[d] = replace(d, outline=d.outline + step, position=position)
+            notes.append(f"tidied: {names[d]} touches {names[other]}, moved by {far:.1f} pixels")
         settled.append(d)
-    return notes
+    return lies, notes
 
 
 def _close(a: Drawn, b: Drawn) -> bool:
@@ -133,7 +135,7 @@ def _gap(a: Drawn, b: Drawn) -> Array:
 
 def _core(d: Drawn) -> tuple[Array, float]:
     """An outline, and how far the body reaches beyond it: a circle is its centre, and its radius beyond."""
-    if d.reading.kind != "circle":
+    if d.kind != "circle":
         return d.outline, 0.0
     return d.outline.mean(axis=0)[None], _radius(d.outline)
 
