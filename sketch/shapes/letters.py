@@ -111,7 +111,8 @@ class Letters:
             for i in group
             if small[i] < NAIL * page.drawn and (len(group) == 1 or extent > HOLDS * small[i])
         ]
-        marks = [*((i, ring) for i, ring in rings if ring >= 0), *crosses]
+        whole_rings = _rings(of, group) if len(group) > 1 and extent < NAIL * page.drawn else []
+        marks = [*((i, ring) for i, ring in rings if ring >= 0), *whole_rings, *crosses]
         return Letter(proposing([Fitted("letter", group, 0.0, NOWHERE)], [gain]), tuple(marks))
 
 
@@ -151,6 +152,16 @@ def _crosses(
                 elif all(small[j] < SHORT * least for j in rest):
                     found.append((i, k))
     return found, whole
+
+
+def _rings(of: Mapping[int, Proposed], group: tuple[int, ...]) -> list[tuple[int, int]]:
+    """Readings of all pieces of a group together as a ring: which piece proposed it, and which it is."""
+    return [
+        (i, k)
+        for i in group
+        for k, (c, gain) in enumerate(zip(of[i].candidates, of[i].gains, strict=True))
+        if gain > 0 and c.kind == "circle" and c.pieces == group
+    ]
 
 
 def _is_straight(c: Fitted) -> bool:
