@@ -26,6 +26,7 @@ PEN = 1 / 320  # of the longer side of the page: the thickness of a bar
 PIN = 0.02
 # times as long as its ink is a page, at least: one that is cut close to its ink is the same page
 MARGIN = 1.25
+THROUGH = 0.5  # of an X's half extent: a line so near to its middle goes through it
 ROUGH = 20.0  # nats that a polygon leaves to be said about its ink: nineteen in twenty clean ones leave less
 
 
@@ -143,15 +144,22 @@ def _held(
 ) -> tuple[Drawn | None, list[Drawn], list[Drawn]]:
     """Likewise, given an X's ends, its middle and its half extent, and the bodies near it.
 
-    Of several that hold it, it fixes the one drawn last; over none the one that its bars reach.
+    Of several that hold it, it fixes the one drawn last; over none the one that its bars reach. Where a line goes
+    through its middle it is the line, if nothing holds more of it than what stands on that does.
     """
-    deep = [(d.depth(middle), d) for d in near]
+    deep = [(d.depth(middle), d) for d in near if d.kind != "bar"]
     over = [d for depth, d in deep if depth < 0]
-    if not over:
-        depth, nearest = min(deep, key=lambda t: t[0], default=(reach, None))
+    within = {d: sum(d.depth(end) < 0 for end in ends) for d in over}
+    # a line bends as it was drawn, and the X is on its ink
+    lines = [(d.off_ink(middle), d) for d in near if d.kind == "bar"]
+    off, line = min(lines, key=lambda t: t[0], default=(reach, None))
+    if line is not None and off < THROUGH * reach and max(within.values(), default=0) <= len(ends) / 2:
+        over = [line]
+    elif not over:
+        depth, nearest = min(deep + lines, key=lambda t: t[0], default=(reach, None))
         over = [nearest] if nearest is not None and depth < reach else []
     # a rod that runs under an X, and holds none of it, is not what the X was drawn on
-    held = [d for d in over if 2 * sum(d.depth(end) < 0 for end in ends) >= len(ends)]
+    held = [d for d in over if 2 * within.get(d, 0) >= len(ends)]
     return max(held or over, key=lambda d: d.last, default=None), over, held
 
 

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sketch.around.pins import PINNED, REACH, is_over
+from sketch.around.pins import PINNED, REACH, is_over, stands_on
 from sketch.around.writing import LARGEST, WITHIN, WRITTEN
 from sketch.kernel import beside, depth, gap
 from sketch.scoring import Fitted
 from sketch.shapes.proposals import Pick, Proposed, Row
-from sketch.typing import Point
+from sketch.typing import Array, Point
 
 __all__ = ["Context"]
 
@@ -27,9 +27,8 @@ MARKED = (
     2.0  # times as large as a body, at most, is an X on it: a larger one is two rods that cross under a pin
 )
 NO_BODY = 33.0  # nats that an X away from every body is unlikely: it would mean nothing
-ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on
-LARGER = 2.0  # times as large as an X is a line that it stands on, at least: else it is an asterisk
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
+SLIPPED = 0.28  # of a body's scale: as near to its outline is an end of such a mark
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.4  # of a bar's extent: as near as the strokes of a letter are
 LETTER = 0.15  # of the page: larger bars are no letter
@@ -64,12 +63,13 @@ class Context:
         what is drawn on it [pixels]; what is small in that is no part of it.
         """
         chosen = [(proposed[p].candidates[k], proposed[p].rows[k]) for p, k in likely]
-        bodies = {c: row for c, row in chosen if c.closed or c.kind in ("cross", "bar")}
+        bars = {c: p for (p, _), (c, _) in zip(likely, chosen, strict=True) if c.kind == "bar"}
+        bodies = {c: row for c, row in chosen if c.closed or c.kind == "cross"}
         held = _held(proposed, bodies)
-        for p in proposed if held else ():  # rods, though their ink may go around with others
-            bodies |= {
-                p.candidates[k]: p.rows[k] for k in p.bars if p.candidates[k] in held and p.gains[k] > 0
-            }
+        for n, p in enumerate(proposed if held else ()):  # rods, though their ink may go around with others
+            bars |= {c: n for k in p.bars if (c := p.candidates[k]) in held and p.gains[k] > 0}
+        courses = {c: proposed[n].course(c) for c, n in bars.items()}
+        bodies |= {c: row for c, (_, row) in courses.items()}
         others = {
             c: row for c, row in (self._bodies | bodies).items() if c not in bodies or c not in self._bodies
         }
@@ -77,7 +77,7 @@ class Context:
         stay = [k for k, p in enumerate(proposed) if p in known]
         kept = set(stay).difference(stay[k] for k, _ in _beside([proposed[k] for k in stay], others))
         anew = [k for k in range(len(proposed)) if k not in kept]
-        near = {k: _Bodies(held) for k in anew}
+        near = {k: _Bodies(held, courses) for k in anew}
         every = list(bodies.items())
         sorts = [None if c.closed else c.kind for c in bodies]
         for k, b in _beside([proposed[k] for k in anew], bodies):
@@ -137,7 +137,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
                 gains[k] -= WRITTEN
         if c.kind == "cross":
             large = extent > LARGE * size
-            if any(bodies.under(c, extent, extent / MARKED)) or bodies.on_line(c, extent):
+            if any(bodies.under(c, extent, extent / MARKED)) or (not large and bodies.on_line(c, extent)):
                 gains[k] += ANCHORS
             elif large or not bodies.reached(c):
                 gains[k] -= NO_BODY * (1 + large)
@@ -206,9 +206,10 @@ def _letters(proposed: list[Proposed], likely: list[Pick], largest: float, known
 class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
-    def __init__(self, held: dict[Fitted, int]) -> None:
-        """held: of open lines, how many of their ends small rings hold."""
+    def __init__(self, held: dict[Fitted, int], courses: dict[Fitted, tuple[Array, Row]]) -> None:
+        """held: of open lines, how many of their ends small rings hold.  courses: of likely ones, as of `Proposed`."""
         self.held = held
+        self._courses = courses
         # likewise of the ink that each is most of; on a picture a line that others cross may be most of none
         self.held_of: dict[int, int] = {}
         self.closed: list[tuple[Fitted, Row]] = []
@@ -271,8 +272,8 @@ class _Bodies:
         for x, y in (c.outline[0].tolist(), c.outline[-1].tolist()) if large else ():
             if any(math.dist(pin.middle, (x, y)) < wide for pin, wide in pins):
                 continue
-            for body, (x0, y0, x1, y1, other) in large:
-                r = 0.1 * other
+            for body, (x0, y0, x1, y1, _) in large:
+                r = SLIPPED * body.scale
                 if (
                     x0 - r <= x <= x1 + r
                     and y0 - r <= y <= y1 + r
@@ -284,24 +285,15 @@ class _Bodies:
 
     def on_line(self, cross: Fitted, extent: float) -> bool:
         """Whether an X stands on an open line of other ink."""
-        return any(_stands_on(cross, extent, line, row) for line, row in self.lines)
+        return any(self._stands_on(cross, extent, line, row) for line, row in self.lines)
 
     def ground(self, line: Fitted, row: Row) -> bool:
         """Whether an X of other ink stands on an open line, and on no closed outline."""
         return any(
-            _stands_on(cross, extent, line, row) and not any(self.under(cross, extent))
+            self._stands_on(cross, extent, line, row) and not any(self.under(cross, extent))
             for cross, extent in self.crosses
         )
 
-
-def _stands_on(cross: Fitted, extent: float, line: Fitted, row: Row) -> bool:
-    """Whether an X of some extent [pixels] stands on an open line of other ink, that is as large as ground is.
-
-    row: where the line is.
-    """
-    (x, y), (x0, y0, x1, y1, long), reach = cross.middle, row, ON_LINE * extent
-    if extent >= long / LARGER or not (x0 - reach < x < x1 + reach and y0 - reach < y < y1 + reach):
-        return False
-    if not set(line.pieces).isdisjoint(cross.pieces):
-        return False
-    return gap(np.array([cross.middle, cross.middle]), line.outline)[0] < reach
+    def _stands_on(self, cross: Fitted, extent: float, line: Fitted, row: Row) -> bool:
+        """Whether an X of some extent [pixels] stands on an open line of other ink.  row: where the line is."""
+        return stands_on(cross, extent, line, *self._courses.get(line, (line.outline, row)))

@@ -1,4 +1,4 @@
-"""What a small ring is drawn over, and so may be a pin of: bodies and open lines."""
+"""What a mark is drawn over: a small ring, that so may be a pin, over bodies and open lines; an X on an open line."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-from sketch.kernel import depth
+import numpy as np
+
+from sketch.kernel import depth, gap
 from sketch.scoring import Fitted
 from sketch.typing import Array
 
-__all__ = ["PINNED", "REACH", "is_on_line", "is_over"]
+__all__ = ["PINNED", "REACH", "is_on_line", "is_over", "stands_on"]
 
 # times as large as a pivot is an open line that it joins, at least: the stem of an "a" is shorter
 PINNED = 3.0
@@ -18,6 +20,8 @@ PINNED = 3.0
 REACH = 0.5
 # of a ring's extent: a line so near to its middle goes through it, and is no ground that it lies on
 THROUGH = 0.25
+ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on
+LARGER = 2.0  # times as large as an X is a line that it stands on, at least: else it is an asterisk
 
 
 def is_over(mark: Fitted, extent: float, body: Fitted, large: float) -> bool:
@@ -42,6 +46,19 @@ def is_on_line(middle: Sequence[float], extent: float, line: Array, long: float)
     if gap > long + extent:  # no point of the line is further from its ends than it is long
         return False
     return any(_distance(middle, a, b) < THROUGH * extent for a, b in pairwise(points))
+
+
+def stands_on(cross: Fitted, extent: float, line: Fitted, course: Array, row: Sequence[float]) -> bool:
+    """Whether an X of some extent [pixels] stands on an open line of other ink, that is as large as ground is.
+
+    course: along the line's ink, (n, 2).  row: least x and y, greatest x and y, and extent of that [pixels].
+    """
+    (x, y), (x0, y0, x1, y1, long), reach = cross.middle, row, ON_LINE * extent
+    if extent >= long / LARGER or not (x0 - reach < x < x1 + reach and y0 - reach < y < y1 + reach):
+        return False
+    if not set(line.pieces).isdisjoint(cross.pieces):
+        return False
+    return gap(np.array([cross.middle, cross.middle]), course)[0] < reach
 
 
 def _distance(at: Sequence[float], a: Sequence[float], b: Sequence[float]) -> float:

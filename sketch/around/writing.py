@@ -10,14 +10,14 @@ import numpy as np
 
 from sketch.around.dimensions import dimension_line
 from sketch.around.hatching import hatching
-from sketch.around.pins import REACH, is_over
+from sketch.around.pins import REACH, is_over, stands_on
 from sketch.around.rows import TALL, Rows, near_one_another
 from sketch.kernel import depth
 from sketch.page.near import overlap
 from sketch.page.pieces import Page
 from sketch.scoring import Fitted
 from sketch.shapes.proposals import Pick, Proposed, Row
-from sketch.typing import Point
+from sketch.typing import Array, Point
 
 __all__ = ["LARGEST", "WITHIN", "WRITTEN", "written"]
 
@@ -56,7 +56,10 @@ def written(
     that are no gravity.  remains: what tracing left of the ink of others, which means nothing and is no letter.
     """
     chosen = [(proposed[p].candidates[k], told[p][k], proposed[p].rows[k]) for p, k in likely]
-    marks = _Marks(page, [(c, row) for c, _, row in chosen], LARGEST * page.drawn)
+    open_lines = [
+        (c, *proposed[p].course(c)) for (p, _), (c, *_) in zip(likely, chosen, strict=True) if c.kind == "bar"
+    ]
+    marks = _Marks(page, [(c, row) for c, _, row in chosen], open_lines, LARGEST * page.drawn)
     letters = marks.in_bodies() - remains
     pins = {  # among those, each as a ring
         i
@@ -126,12 +129,18 @@ class _Marks:
         largest: of what is written [pixels].
     """
 
-    def __init__(self, page: Page, likely: Sequence[tuple[Fitted, Row]], largest: float) -> None:
-        """likely: with where they lie, as of `Proposed`."""
+    def __init__(
+        self,
+        page: Page,
+        likely: Sequence[tuple[Fitted, Row]],
+        lines: Sequence[tuple[Fitted, Array, Row]],
+        largest: float,
+    ) -> None:
+        """likely: with where they lie, as of `Proposed`.  lines: those that are open, along their ink, likewise."""
         self.largest = largest
         self._page = page
         self._bodies = [c for c, _ in likely if c.closed]
-        self._lines = [(c, row[4]) for c, row in likely if c.kind == "bar"]
+        self._lines = lines
         where = np.array([row for c, row in likely if c.closed]).reshape(-1, 5)
         self._boxes, self._extents = where[:, :4], where[:, 4]
         self._known: dict[Fitted, list[Fitted]] = {}
@@ -183,7 +192,8 @@ class _Marks:
         if self.joins(c, where[4]):
             return 0.0
         if not under:
-            return WRITTEN * beside
+            on_line = c.kind == "cross" and any(stands_on(c, where[4], *line) for line in self._lines)
+            return WRITTEN * beside * (not on_line)
         every = rows.idle(c.pieces, size * TALL / MARKED["circle"]) if c.kind == "circle" else []
         on = {i for i in every if self._is_on(under, i) and not self._is_spoke(c, size, i)}.union(halves)
         if on and c.kind == "circle" and self._is_pinned_again(under[0], c):
@@ -216,7 +226,9 @@ class _Marks:
         if c.kind != "circle":
             return False
         bodies = len(self._under(c, extent))
-        return bodies > 1 or bodies + sum(is_over(c, extent, line, long) for line, long in self._lines) > 1
+        return (
+            bodies > 1 or bodies + sum(is_over(c, extent, line, row[4]) for line, _, row in self._lines) > 1
+        )
 
     def _is_pinned_again(self, body: Fitted, c: Fitted) -> bool:
         """Whether another small ring than c lies over a body and no other: eyes, and no nails."""

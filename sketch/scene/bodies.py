@@ -37,7 +37,7 @@ class Drawn:
         ink: its strokes, in the order of drawing.  last: the last one's key: of what is drawn later it is greater.
         line: its reading's outline [pixels], (n, 2).
         outline: the same, closed, of a bar as thick as the pen.
-        box: around that: least x and y, greatest x and y.
+        box: around that, and the ink of a bar, which bends beside its line: least x and y, greatest x and y.
         size: square root of the area; of a bar its length [pixels].
         shape, position, angle: as of a `Body`.
     """
@@ -68,6 +68,12 @@ class Drawn:
     def depth(self, point: Point) -> float:
         """Distance of a point from the outline [pixels], negative inside."""
         return depth(*point, self.outline)
+
+    def off_ink(self, point: Point) -> float:
+        """Distance of a point from the ink that it was drawn with [pixels]."""
+        inks = (stroke.points[:, :2] for stroke in self.ink)
+        there_and_back = (np.concatenate([ink, ink[-2:0:-1]]) for ink in inks)  # closed, around nothing
+        return min((abs(depth(*point, ink)) for ink in there_and_back), default=math.inf)
 
 
 class Bodies:
@@ -134,7 +140,8 @@ def drawn_body(
             local.reverse()
         shape = Polygon(local)
     size = float(np.ptp(outline, axis=0).max()) if kind == "bar" else pixels_per_metre * math.sqrt(abs(area))
-    ((x0, y0, x1, y1),) = boxes_around([outline]).tolist()
+    around = [outline, *(stroke.points[:, :2] for stroke in ink if kind == "bar")]
+    ((x0, y0, x1, y1),) = boxes_around([np.concatenate(around)]).tolist()
     position = middle.real, middle.imag
     return Drawn(kind, forced, ink, last, line, outline, (x0, y0, x1, y1), size, shape, position, angle)
 

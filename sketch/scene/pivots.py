@@ -11,7 +11,6 @@ import numpy as np
 
 from sketch.around.pins import is_on_line
 from sketch.kept import Kept
-from sketch.kernel import depth
 from sketch.reading import Reading
 from sketch.scene.bodies import Bodies, Drawn, ids, touch
 from sketch.typing import Point
@@ -182,7 +181,7 @@ def _under(ring: Drawn, bodies: Bodies) -> tuple[list[Drawn], list[Drawn], float
     further: list[Drawn] = []
     if over:
         (_, first), *rest = near
-        missed = [d for depth, d in rest if depth > 0 and _off_ink(d, ring) < radius]
+        missed = [d for depth, d in rest if depth > 0 and d.off_ink(ring.middle) < radius]
         first, *others = every = _foremost([first, *(d for depth, d in rest if depth <= 0)], missed)
         further = [
             d for d in others[1:] if d not in missed and not any(_holds(d, e) for e in every if e is not d)
@@ -190,7 +189,7 @@ def _under(ring: Drawn, bodies: Bodies) -> tuple[list[Drawn], list[Drawn], float
         reach = NEAR * radius
     else:
         rest = [(depth, d) for depth, d in near if depth < NEAR * radius and radius < NAILS * d.size]
-        off = {d: min(depth, _off_ink(d, ring)) for depth, d in rest} if len(rest) > 1 else {}
+        off = {d: min(depth, d.off_ink(ring.middle)) for depth, d in rest} if len(rest) > 1 else {}
         first = min(off, key=lambda d: off[d], default=ring)
         if off.get(first, math.inf) > ON * radius:
             return [], [], 0.0
@@ -296,14 +295,6 @@ def _joined(wheel: Drawn, other: Drawn, ring: Drawn, bodies: Bodies) -> bool:
         for further in rings
         if further.size < 2 * ring.size
     )
-
-
-def _off_ink(d: Drawn, ring: Drawn) -> float:
-    """The distance of a ring's middle from the ink that a body was drawn with [pixels]."""
-    x, y = ring.middle
-    inks = (stroke.points[:, :2] for stroke in d.ink)
-    there_and_back = (np.concatenate([ink, ink[-2:0:-1]]) for ink in inks)  # closed, around nothing
-    return min((abs(depth(x, y, ink)) for ink in there_and_back), default=math.inf)
 
 
 def _either(ring: Reading, taken: str, other: str) -> str:

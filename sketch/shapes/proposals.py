@@ -118,6 +118,13 @@ class Proposed:
         """The ends of each bar [pixels], (bars, 2, 2)."""
         return np.array([self.candidates[k].outline[[0, -1]] for k in self.bars])
 
+    def course(self, line: Fitted) -> tuple[Array, Row]:
+        """One of these bars as it bends along its ink, and where it is: over a long one the hand strays further than
+        what stands on it is large."""
+        its = (k for k in self.bars if self.candidates[k].pieces == line.pieces)
+        k = max(its, key=lambda k: len(self.candidates[k].outline))
+        return self.candidates[k].outline, self.rows[k]
+
     @lazy
     def borrowing(self) -> bool:
         """Whether some have a side of another body."""

@@ -1,0 +1,96 @@
+"""Ground drawn as one line, and what is drawn at it: the hand strays further over a long line than what stands on it
+is large."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pages import Array, box, read
+
+from sketch.synthetic import HANDS, Hand, arrow, circle, cross, curve, line, outline
+
+HAND = Hand(tremor=0.002, drift=0.008, rounding=0.02, overshoot=0.02, spacing=0.03, unsteady=0.7)
+SEEDS = range(6)
+
+
+def bowed(height: float, rng: np.random.Generator) -> list[Array]:
+    """A line across the page, at 650 px where it begins and ends, and so much higher in the middle."""
+    at = np.linspace(-1, 1, 60)
+    return curve(np.stack([640 + 580 * at, 650 - height * (1 - at**2)], axis=1), HAND, rng)
+
+
+def fall(rng: np.random.Generator) -> list[Array]:
+    return arrow((1150, 120), (1150, 240), HAND, rng)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_an_x_is_on_the_ink_of_a_line_that_bends(seed: int) -> None:
+    """Where that is as far from the straight line nearest to it as the X is large."""
+    rng = np.random.default_rng(seed)
+    ground, x = bowed(34, rng), cross((90, 648), 22, HAND, rng)
+    crate = outline(box(640, 560, 110, 90), HAND, rng)
+    scene = read(ground, x, crate, fall(rng)).scene
+    assert [body.anchored for body in scene.bodies] == [True, False]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_an_x_on_a_line_is_not_of_the_wedge_that_stands_there(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    ground, x = line([(60, 650), (1220, 650)], HAND, rng), cross((420, 651), 44, HAND, rng)
+    wedge = outline([(300, 655), (800, 655), (620, 430)], HAND, rng)
+    scene = read(ground, x, wedge, fall(rng)).scene
+    assert [body.anchored for body in scene.bodies] == [True, False]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_an_x_on_a_line_is_no_letter_beside_another(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    ground, x = line([(60, 650), (1220, 650)], HAND, rng), cross((200, 650), 30, HAND, rng)
+    letter = curve(
+        np.array([(196, 590), (196, 622), (197, 610), (206, 604), (212, 610), (212, 622)]), HAND, rng
+    )
+    crate = outline(box(640, 600, 110, 90), HAND, rng)
+    scene = read(ground, x, letter, crate, fall(rng)).scene
+    assert [body.anchored for body in scene.bodies] == [True, False]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_wedge_whose_ends_cross_on_a_line_is_no_large_x(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    ground = line([(60, 650), (1220, 650)], HAND, rng)
+    sides = [(660, 380), (330, 640), (860, 640), (600, 390)]
+    wedge = line(sides, Hand(rounding=0.12), rng)
+    ball = circle((630, 350), 36, HAND, rng)
+    bodies = read(ground, wedge, ball, fall(rng)).scene.bodies
+    assert len(bodies) == 3
+    assert not any(body.anchored for body in bodies)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_rope_past_the_edge_of_a_long_shelf_is_no_slip_at_it(seed: int) -> None:
+    """From a wheel beside the shelf to a crate, 40 px from the shelf; it is pinned to the crate alone."""
+    rng = np.random.default_rng(seed)
+    shelf = outline(box(440, 470, 700, 56), HANDS["neat"], rng) + cross((440, 470), 36, HAND, rng)
+    wheel = circle((782, 396), 44, HAND, rng)
+    rope, crate = line([(830, 410), (830, 530)], HAND, rng), outline(box(830, 576, 120, 110), HAND, rng)
+    ring = circle((830, 530), 7, HANDS["neat"], rng)
+    scene = read(shelf, wheel, rope, crate, ring, fall(rng)).scene
+    assert len(scene.bodies) == 4
+    assert [joint.bodies for joint in scene.joints] == [("b3", "b4")]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_ring_drawn_over_twice_at_the_end_of_a_rope_is_a_pin(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    beam = outline(box(640, 200, 600, 50), HAND, rng) + cross((800, 200), 30, HAND, rng)
+    rope = curve(
+        np.array([(500 - 14 * math.sin(t), 204 + 40 * t) for t in np.linspace(0, 3.14, 30)]), HAND, rng
+    )
+    ring = circle((500, 206), 7, Hand(drift=0.03, spacing=0.11, unsteady=0.6), rng)
+    ball, pin = circle((500, 340), 34, HAND, rng), circle((500, 326), 7, HANDS["neat"], rng)
+    again = [stroke + 0.3 for stroke in ring]
+    scene = read(beam, rope, ring, again, ball, pin, fall(rng)).scene
+    assert len(scene.bodies) == 3
+    assert sorted(joint.bodies for joint in scene.joints) == [("b1", "b2"), ("b2", "b3")]
