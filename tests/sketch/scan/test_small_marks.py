@@ -8,9 +8,10 @@ from itertools import pairwise
 import cv2
 import numpy as np
 import pytest
-from sheets import even
+from sheets import HEIGHT, WIDTH, drawn, encoded, even, ink
 from test_tangles import BOX, circle, inked, kinds, read
 
+from sketch.scan import read_picture
 from sketch.scan.binding import distances, thin, trace
 from sketch.scan.paper.faint import drop_faint_marks
 from sketch.scan.skeleton.corners import sharpen_corners
@@ -158,6 +159,18 @@ def test_crumbs_alone_are_as_dark_as_they_are() -> None:
     before = mask.copy()
     assert drop_faint_marks(mask, 200 * mask, trace(*thin(mask)), distance, 8.0) == 0
     assert np.array_equal(mask, before)
+
+
+@pytest.mark.parametrize("gap", [5, 6])
+def test_two_lines_that_melt_together_are_no_faint_mark(gap: int) -> None:
+    """Between them the ink is pale, and soft: they are as dark as their own middles."""
+    fine = np.zeros((4 * HEIGHT, 4 * WIDTH), np.uint8)
+    for y in (1800, 1800 + 4 * gap):
+        cv2.line(fine, (480, y), (1600, y), 255, 13, cv2.LINE_AA)
+    beside = cv2.resize(fine, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA) / 255
+    picture = cv2.GaussianBlur(drawn(np.maximum(ink(pen=3.2), beside)).astype(np.float32), (0, 0), 1.5)
+    noise = np.random.default_rng(1).normal(0, 2, (HEIGHT, WIDTH, 1))
+    assert read_picture(encoded(np.clip(picture + noise, 0, 255).astype(np.uint8))).notes == []
 
 
 @pytest.mark.parametrize(
