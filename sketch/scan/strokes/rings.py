@@ -196,7 +196,7 @@ class _Places:
 
     def touched(self, middle: Points, reach: float, inside: NDArray[np.bool_]) -> list[int]:
         """Likewise, and those that end at one of some nodes."""
-        ending = ((self._ends >= 0) & inside[self._ends]).any(axis=1)
+        ending = np.append(inside, False)[self._ends].any(axis=1)  # what is closed ends at -1
         found: list[int] = np.flatnonzero(self._comes_near(middle, reach) | ending).tolist()
         return found
 

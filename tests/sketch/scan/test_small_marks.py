@@ -173,6 +173,14 @@ def test_two_lines_that_melt_together_are_no_faint_mark(gap: int) -> None:
     assert read_picture(encoded(np.clip(picture + noise, 0, 255).astype(np.uint8))).notes == []
 
 
+@pytest.mark.parametrize("radius", [8.9, 9.3])
+def test_a_ring_that_hides_all_of_another_way_around_it(radius: float) -> None:
+    """Under a wide pen: nothing is left of the graph but closed lines, which end nowhere."""
+    scene = read([BOX, circle(330.3, 252.15, radius)], 9.0)
+    assert kinds(scene) == ["rectangle"]
+    assert len(scene.joints) == 1
+
+
 @pytest.mark.parametrize(
     ("pen", "half", "bow", "tip"),
     [(4.0, 8, -0.2, 2), (4.5, 8, -0.1, 6), (5.5, 10, -0.2, 4), (5.5, 11, -0.2, 2)],
