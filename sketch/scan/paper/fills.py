@@ -15,6 +15,9 @@ __all__ = ["FILL", "fill_grain", "fill_hatching", "holes", "hollow_fills"]
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
 GRAIN = 1.0  # squares of the pen width: larger holes are no grain
 WITHIN = 1.0  # pen widths from the paper: nothing within one line, nor where two cross, is as far
+AROUND = (
+    0.6  # likewise, all around a hole: a line that leaves one bare has less than half its width beside it
+)
 PINHOLE = 0.3  # squares of the pen width: nobody draws around a smaller hole
 GAP = 2.0  # pen widths: the lines of hatching are not farther apart
 # of its area, the square of half the way around a gap between such lines: four times as long as wide
@@ -71,9 +74,10 @@ def fill_grain(mask: Image, distance: NDArray[Any], pen: float) -> bool:
         return False
     cv2.drawContours(mask, [way for way, _ in small], -1, 1, cv2.FILLED)
     distances(mask, distance)
+    rims = [distance[way[:, 0, 1], way[:, 0, 0]] for way, _ in small]
     within = [
-        area < PINHOLE * pen * pen or distance[way[:, 0, 1], way[:, 0, 0]].max() < WITHIN * pen
-        for way, area in small
+        area < PINHOLE * pen * pen or (rim.max() < WITHIN * pen and rim.min() < AROUND * pen)
+        for (_, area), rim in zip(small, rims, strict=True)
     ]
     between = [way for (way, _), grain in zip(small, within, strict=True) if not grain]
     for way in between:

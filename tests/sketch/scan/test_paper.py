@@ -38,6 +38,13 @@ def test_a_page_of_filled_shapes_alone_is_read() -> None:
     assert differences(seen, recognize(load_sketch(data)).scene) == []
 
 
+@pytest.mark.parametrize("number", [11, 29, 47])
+def test_the_hole_of_a_pivot_under_a_marker_is_bare(number: int) -> None:
+    """A line is not so thick as a ring is all around its hole, and so it is no grain."""
+    data, seen = photographed(draw(number, 7416, 20), PAPERS["marker"], np.random.default_rng([7412, number]))
+    assert differences(seen, recognize(load_sketch(data)).scene) == []
+
+
 @pytest.mark.parametrize("name", ["ruled darkly", "squared darkly", "coffee", "on a table, with fingers"])
 def test_ink_is_all_that_is_seen(name: str) -> None:
     """The mask covers the strokes, and nothing is far from them."""
