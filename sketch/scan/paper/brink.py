@@ -29,12 +29,19 @@ def lit_from_within(light: Image, paper: Image | None, margin: int) -> tuple[Ima
     """
     import cv2
 
-    inside, lit = np.zeros_like(light), np.zeros_like(light)
-    for some, by in ((inside, margin), (lit, margin + SPREAD)):
-        within = (slice(by, -by),) * 2
-        some[within] = 255 if paper is None else paper[within]
-    around = _grown(np.asarray(cv2.min(light, lit)), REACH + SPREAD)
-    return np.where(lit > 0, light, around), inside
+    inside, by = np.zeros_like(light), min(margin + SPREAD, (min(light.shape) - 1) // 2)
+    within = (slice(margin, -margin),) * 2
+    inside[within] = 255 if paper is None else paper[within]
+
+    def across(some: Image) -> Image:  # the picture's edges, where a shadow leads beyond them
+        far = some[by : some.shape[0] - by, by : some.shape[1] - by]
+        return np.asarray(cv2.copyMakeBorder(far, by, by, by, by, cv2.BORDER_REPLICATE))
+
+    light = across(light)
+    if paper is not None:
+        lit = across(paper)
+        light = np.where(lit > 0, light, _grown(np.asarray(cv2.min(light, lit)), REACH + SPREAD))
+    return light, inside
 
 
 def table_around(small: Image, light: Image, inside: Image, floor: float) -> tuple[Image, Image]:

@@ -32,6 +32,8 @@ HUNG = 0.2  # likewise, the largest thing that hangs on a board's frame or lies 
 DARK_BOARD = 110  # of 255
 COLOURED = 1.25  # times the light in its darkest channel that paper has in its brightest
 MARGIN = 2  # [pixels] of the reduced picture: along the edges of the picture that are not looked at
+STEEP = 0.85  # of the light beside it: what has less is beyond the edge of a shadow
+PEN = 0.008  # of the picture's size, to either side: what is narrower is a pen's line, also at the edge of a shadow
 DIMMEST = 24  # of 255: light below this shows nothing but noise
 SOLID = 0.6  # of its box: what a disc covers at least, and no outline
 HOLE = 0.012  # of the picture's size: a hole punched into the sheet has more from corner to corner of its box
@@ -110,13 +112,21 @@ def read_page(picture: Image) -> Page:
         # on the sheet, what is dark all over is filled: it has the light of the paper around it
         light = np.where((paper > 0) & (light < TABLE * around), around, light).astype(np.uint8)
     # where light changes at an edge its side is known to a small pixel only: taken as on the dark side
-    light = cv2.blur(cv2.erode(light, np.ones((3, 3), np.uint8)), (3, 3))
+    low = cv2.erode(light, np.ones((3, 3), np.uint8))
+    near = _near_shadows(light, low)
+    light = cv2.blur(low, (3, 3))
     light = _less_stains(light, small, reduced)
     within, inside = lit_from_within(light, paper, MARGIN)
+    if near is not None:
+        fine = _fine_light(255 - picture if negative else picture)
+        near = np.asarray(cv2.min(near, inside))
     rim, long = MARGIN * reduced, NOTABLE * (width * height) ** 0.5
 
     def less(light: Image) -> Image:
         lit = _enlarged(light, reduced, shape, cv2.INTER_LINEAR)
+        if near is not None:
+            edges = _enlarged(near, reduced, shape, cv2.INTER_NEAREST)
+            lit = np.asarray(cv2.max(lit, cv2.min(edges, fine)))
         return darkness(picture, lit, dimmest=DIMMEST, negative=negative)
 
     dark = less(within)
@@ -129,6 +139,25 @@ def read_page(picture: Image) -> Page:
     places = table_around(small, within, inside, _floor(noise))
     table, about = (_enlarged(some, reduced, shape, cv2.INTER_NEAREST) for some in places)
     return Page(dark, noise, edge, rim, drop_table(dark, less(light), table, about, rim, _floor(noise), long))
+
+
+def _near_shadows(light: Image, low: Image) -> Image | None:
+    """255 near where light changes at once, or None without any.  low: the least light around each pixel."""
+    import cv2
+
+    high = cv2.dilate(light, np.ones((3, 3), np.uint8))
+    steep = (low * np.uint16(100) < high * np.uint16(100 * STEEP)).view(np.uint8)
+    return np.asarray(cv2.dilate(steep * np.uint8(255), np.ones((7, 7), np.uint8))) if steep.any() else None
+
+
+def _fine_light(picture: Image) -> Image:
+    """The light on a BGR picture to the pixel, on which no line is seen that is narrower than any pen's."""
+    import cv2
+
+    height, width = picture.shape[:2]
+    reach = 2 * round(PEN * (height * width) ** 0.5) + 1
+    small = cv2.blur(darkest_channel(picture), (3, 3))
+    return np.asarray(cv2.morphologyEx(small, cv2.MORPH_CLOSE, np.ones((reach, reach), np.uint8)))
 
 
 def _balance(colours: Image, paper: Image | None) -> Image | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+import pytest
 from sheets import HEIGHT, WIDTH, assert_all, drawn, encoded, ink, lit
 
 from sketch.scan import read_picture
@@ -29,3 +30,16 @@ def test_a_pen_on_a_grey_table_is_not_drawn() -> None:
     for stroke in sketch.strokes:
         stroke.points[:, 1] -= high
     assert_all(sketch)
+
+
+@pytest.mark.parametrize("off", [4, 7, 10])
+def test_a_line_along_the_edge_of_a_shadow_is_read(off: int) -> None:
+    """Of light that is known to some pixels only, the line would be hidden by what is less of it beside."""
+    beside = ACROSS * WIDTH - 330 - off + 10 * (DOWN * HEIGHT - 220) / 160  # of the box's right side
+    edge = 1 / (1 + np.exp(-np.clip(beside, -40, 40) / 1.5))
+    picture = lit(drawn(ink(pen=3), pen=(165, 165, 165), noise=2), (1 - 0.45 * edge) * LAMP)
+    large = cv2.resize(picture, None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC)
+    sketch = read_picture(encoded(large))
+    for stroke in sketch.strokes:
+        stroke.points[:] = (stroke.points + 0.5) / 2 - 0.5
+    assert_all(sketch, 2.0)
