@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from sketch.ink import Sketch
 from sketch.kept import Kept
 from sketch.reading import Reading
 from sketch.scene.bodies import Bodies, Drawn, body, drawn_body, ids
-from sketch.scene.pivots import UNSURE, Pivot, pivots
+from sketch.scene.pivots import UNSURE, Pivot, either, pivots
 from sketch.scene.tidy import close_gaps, straighten
 from sketch.typing import Point
 
@@ -57,13 +58,14 @@ def interpret(
             d = kept(drawn_body, r.kind, r.forced, ink, keys[r.strokes[-1]], r.outline.tobytes(), ppm, pen)
             of[d] = r
     bodies = Bodies(list(of))
-    crosses = [r for r in readings if r.kind == "anchor"]
-    bodies.fixed = {on for r in crosses if (on := _anchored(r, bodies, kept)[0]) is not None}
+    crosses = [(r, _cross(r, bodies)) for r in readings if r.kind == "anchor"]
+    bodies.fixed = {on for _, cross in crosses if (on := cross.on(bodies.pins, kept).fixed) is not None}
     numbers = {d: k for k, d in enumerate(bodies.drawn, start=1)}
-    names = {d: f"b{k}" for d, k in numbers.items()}
-    joints = pivots(bodies, of, names, PIN * max(longer, MARGIN * wide), notes, kept)
+    joints, unsure = pivots(bodies, of, PIN * max(longer, MARGIN * wide), kept)
     names = {d: f"b{k}" for k, d in enumerate((d for d in of if d not in bodies.pins), start=1)}
-    anchored = {on for r in crosses if (on := _anchor(r, bodies, names, notes, kept)) is not None}
+    notes += [either(of[ring], names[d]) for ring, d in unsure]
+    held_by = [_anchored(r, cross.on(bodies.pins, kept), names, notes) for r, cross in crosses]
+    anchored = {d for d in held_by if d is not None}
     pull = _gravity(readings, notes) if gravity is None else gravity
     lies: Mapping[Drawn, Drawn] = {}
     if tidy:
@@ -128,21 +130,38 @@ def _joint(pivot: Pivot, names: Mapping[Drawn, str], ppm: float) -> Joint:
 # ---------------------------------------------------------------- anchors, gravity, doubts
 
 
-def _anchored(cross: Reading, bodies: Bodies, kept: Kept) -> tuple[Drawn | None, list[Drawn], list[Drawn]]:
-    """The body that an X fixes, those that it lies over, and of these those that hold at least half of its bars'
-    ends."""
-    ends = tuple((x, y) for x, y in cross.outline.tolist())
+class _On(NamedTuple):
+    """The body that an X fixes, those that it lies over, and of these those that hold most of its bars' ends."""
+
+    fixed: Drawn | None
+    over: list[Drawn]
+    held: list[Drawn]
+
+
+class _Cross(NamedTuple):
+    """An X: its ends, their middle, its half extent [pixels], and the bodies near it."""
+
+    ends: tuple[Point, ...]
+    middle: Point
+    reach: float
+    near: list[Drawn]
+
+    def on(self, pins: Set[Drawn], kept: Kept) -> _On:
+        """What it is drawn on, given which circles are pivots."""
+        near = tuple(d for d in self.near if d not in pins)
+        return kept(_held, self.ends, self.middle, self.reach, near)
+
+
+def _cross(reading: Reading, bodies: Bodies) -> _Cross:
+    ends = tuple((x, y) for x, y in reading.outline.tolist())
     xs, ys = zip(*ends, strict=True)
     middle = sum(xs) / len(xs), sum(ys) / len(ys)
     reach = math.hypot(max(xs) - min(xs), max(ys) - min(ys)) / 2
-    near = tuple(d for d in bodies.near(middle, reach) if d not in bodies.pins)
-    return kept(_held, ends, middle, reach, near)
+    return _Cross(ends, middle, reach, bodies.near(middle, reach))
 
 
-def _held(
-    ends: tuple[Point, ...], middle: Point, reach: float, near: tuple[Drawn, ...]
-) -> tuple[Drawn | None, list[Drawn], list[Drawn]]:
-    """Likewise, given an X's ends, its middle and its half extent, and the bodies near it.
+def _held(ends: tuple[Point, ...], middle: Point, reach: float, near: tuple[Drawn, ...]) -> _On:
+    """What an X is drawn on, as of `_Cross`.
 
     Of several that hold it, it fixes the one drawn last; over none the one that its bars reach. Where a line goes
     through its middle it is the line, if nothing holds more of it than what stands on that does.
@@ -160,14 +179,12 @@ def _held(
         over = [nearest] if nearest is not None and depth < reach else []
     # a rod that runs under an X, and holds none of it, is not what the X was drawn on
     held = [d for d in over if 2 * within.get(d, 0) >= len(ends)]
-    return max(held or over, key=lambda d: d.last, default=None), over, held
+    return _On(max(held or over, key=lambda d: d.last, default=None), over, held)
 
 
-def _anchor(
-    reading: Reading, bodies: Bodies, names: Mapping[Drawn, str], notes: list[str], kept: Kept
-) -> Drawn | None:
-    """The body that an X is drawn on."""
-    fixed, over, held = _anchored(reading, bodies, kept)
+def _anchored(reading: Reading, on: _On, names: Mapping[Drawn, str], notes: list[str]) -> Drawn | None:
+    """The body that an X is drawn on; what was decided is noted."""
+    fixed, over, held = on
     if fixed is None:
         notes.append(f"the X of {reading.named} is over no body: it anchors nothing")
     elif len(over) > 1:

@@ -27,7 +27,13 @@ class Kept:
 
     def __call__(self, make: Callable[..., T], *given: Hashable) -> T:
         """What a function makes of what it is given, and of nothing else; the result is never changed."""
-        key = make, *given
+        return self._found((make, *given), make, given)
+
+    def through(self, make: Callable[..., T], *given: Hashable) -> T:
+        """Likewise of a function that keeps what it makes on the way, and so is given this first."""
+        return self._found((make, *given), make, (self, *given))
+
+    def _found(self, key: Hashable, make: Callable[..., T], given: tuple[Any, ...]) -> T:
         there = self._known.get(key)
         if there is None:
             there = self._known[key] = [0, make(*given)]

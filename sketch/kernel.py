@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 from collections.abc import Mapping, Sequence
+from itertools import accumulate, chain
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +32,7 @@ __all__ = [
     "fit_arrows",
     "fit_cross",
     "gap",
+    "held",
     "is_simple",
     "joined",
     "lent",
@@ -39,6 +41,7 @@ __all__ = [
     "place",
     "places",
     "ring",
+    "together",
     "touch",
     "words",
 ]
@@ -60,6 +63,8 @@ _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 6, _int, *[_pointer] * 2, _double
 _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
     ("ink_beside", _lib)
 )
+_held = ctypes.CFUNCTYPE(None, _pointer, _int, _pointer, _int, *[_double] * 3, _pointer)(("ink_held", _lib))
+_patches = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, _int, *[_pointer] * 2)(("ink_patches", _lib))
 _words = ctypes.CFUNCTYPE(
     ctypes.c_int64, _pointer, _int, *[_pointer] * 3, _double, _double, _pointer, ctypes.c_int64
 )(("ink_words", _lib))
@@ -261,6 +266,15 @@ def beside(boxes: Array, bodies: Array) -> list[list[int]]:
         room = count
 
 
+def held(lines: Array, rings: Array, in_ring: float, through: float, shorter: float) -> NDArray[np.int32]:
+    """How many ends of each open line, given where these are, (n, 2, 2), rings hold, given their middles and extents,
+    (m, 3) [pixels] (see core/held.c)."""
+    found = np.empty(len(lines), dtype=np.int32)
+    of = address(lines), len(lines), address(rings), len(rings)
+    _held(*of, in_ring, through, shorter, address(found))
+    return found
+
+
 def cuts(strokes: Sequence[Array]) -> list[tuple[list[float], list[int]]]:
     """Where each stroke, (n, 2), may go on from one thing to the next: shares of its length, 0 and 1 among them, and
     what the parts between look like: 0 a loop, 1 a straight line, 2 a way (see core/cut.c)."""
@@ -369,6 +383,19 @@ def gap(one: Array, other: Array) -> tuple[float, Point]:
     at, one, other = np.empty(2), np.ascontiguousarray(one), np.ascontiguousarray(other)
     wide = float(_gap(address(one), len(one), address(other), len(other), address(at)))
     return wide, (float(at[0]), float(at[1]))
+
+
+def together(inks: Sequence[Sequence[int]]) -> list[int]:
+    """Numbers of the patches that some inks are in, each of a piece at least: those that share pieces, however
+    indirectly, are in one (see core/patches.c)."""
+    if not inks:
+        return []
+    members = np.fromiter(chain.from_iterable(inks), dtype=np.int32)
+    ends = np.fromiter(accumulate(map(len, inks)), dtype=np.int32)
+    most, patch = int(members.max()) + 1, np.empty(len(inks), dtype=np.int32)
+    parent = np.empty(2 * most, dtype=np.int32)
+    _patches(address(members), address(ends), len(inks), most, address(parent), address(patch))
+    return patch.tolist()
 
 
 def touch(one: Array, other: Array, at: Point, reach: float, near: float) -> bool:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sketch.kept import Kept
 from sketch.kernel import depth
 from sketch.page.near import boxes_around
 from sketch.scoring import Fitted
@@ -41,16 +42,16 @@ class Chosen(NamedTuple):
         return Chosen(replace(self.fit, pieces=pieces), self.gain + other.gain)
 
 
-def merged(chosen: list[Chosen]) -> list[Chosen]:
+def merged(chosen: list[Chosen], kept: Kept) -> list[Chosen]:
     """The same explanation with each body and each mark in one reading, though it was drawn in parts."""
-    chosen = _bodies_gone_over(chosen)
+    chosen = _bodies_gone_over(chosen, kept)
     others = [c for c in chosen if c.fit.kind not in ("arrow", "cross")]
-    crosses = _marks_gone_over([c for c in chosen if c.fit.kind == "cross"])
-    arrows = _marks_gone_over([c for c in chosen if c.fit.kind == "arrow"])
-    return _with_tails(arrows, others + crosses)
+    crosses = _marks_gone_over([c for c in chosen if c.fit.kind == "cross"], kept)
+    arrows = _marks_gone_over([c for c in chosen if c.fit.kind == "arrow"], kept)
+    return _with_tails(arrows, others + crosses, kept)
 
 
-def _bodies_gone_over(chosen: list[Chosen]) -> list[Chosen]:
+def _bodies_gone_over(chosen: list[Chosen], kept: Kept) -> list[Chosen]:
     """The chosen, with bodies that were drawn over one another in full joined to the best of them: no two bodies have
     one place."""
     chosen = sorted(chosen, key=lambda c: -c.gain)
@@ -66,7 +67,7 @@ def _bodies_gone_over(chosen: list[Chosen]) -> list[Chosen]:
         k, j = closed[a], closed[b]
         if k not in gone and j not in gone and _in_one_place(chosen[j].fit, chosen[k].fit):
             gone.add(j)
-            chosen[k] = chosen[k].along_with(chosen[j])
+            chosen[k] = kept(Chosen.along_with, chosen[k], chosen[j])
     return [chosen[k] for k in range(len(chosen)) if k not in gone]
 
 
@@ -82,18 +83,21 @@ def _in_one_place(a: Fitted, b: Fitted) -> bool:
     )
 
 
-def _marks_gone_over(marks: list[Chosen]) -> list[Chosen]:
+def _marks_gone_over(marks: list[Chosen], kept: Kept) -> list[Chosen]:
     """Some arrows, or some crosses, with those between the same places joined to the best of them."""
     marks = sorted(marks, key=lambda c: -c.gain)
     boxes = boxes_around([c.fit.outline for c in marks])
     reach = np.array([SAME_PLACE * math.dist(*c.fit.outline[:2].tolist()) for c in marks])
     apart = [np.abs(side[:, None] - side) for side in boxes.T]
     close = np.maximum.reduce(apart) < reach  # for else their ends are further apart
+    before: dict[int, list[int]] = {}
+    for n, k in np.argwhere(np.tril(close, -1)).tolist():
+        before.setdefault(n, []).append(k)
     whole: dict[int, Chosen] = {}
     for n, mark in enumerate(marks):
-        for k in np.flatnonzero(close[n, :n]).tolist():
+        for k in before.get(n, ()):
             if k in whole and _ends_apart(mark.fit, whole[k].fit) < reach[k]:
-                whole[k] = whole[k].along_with(mark)
+                whole[k] = kept(Chosen.along_with, whole[k], mark)
                 break
         else:
             whole[n] = mark
@@ -108,25 +112,32 @@ def _ends_apart(mark: Fitted, other: Fitted) -> float:
     return max(min(math.dist(p, q) for q in places) for of, places in ((ends, its), (its, ends)) for p in of)
 
 
-def _with_tails(arrows: list[Chosen], others: list[Chosen]) -> list[Chosen]:
+def _with_tails(arrows: list[Chosen], others: list[Chosen], kept: Kept) -> list[Chosen]:
     """All that was chosen, with bars that are the far parts of arrows' shafts joined to these: the pen was lifted."""
-    others = list(others)
     bars = [c for c in others if c.fit.kind == "bar" and len(c.fit.outline) == 2]
-    at = np.array([bar.fit.outline for bar in bars]).reshape(-1, 2, 2)
-    whole = []
-    for arrow in arrows:
-        tail, tip = arrow.fit.outline
-        lift = np.hypot(*(at - tail).transpose(2, 0, 1)).min(axis=1)
-        near = np.flatnonzero(lift < 1.001 * LIFT * np.hypot(*(at - tip).transpose(2, 0, 1)).max(axis=1))
-        for bar in (bars[n] for n in near.tolist()):
-            beyond = _tail_beyond(arrow.fit, bar.fit)
-            if beyond is not None and bar in others:
-                others.remove(bar)
-                fit, gain = arrow.along_with(bar)
-                arrow = Chosen(replace(fit, outline=np.array([beyond, tip])), gain)
-                break
-        whole.append(arrow)
+    if not bars or not arrows:
+        return others + arrows
+    tails, tips = np.array([arrow.fit.outline for arrow in arrows]).transpose(1, 0, 2)[:, :, None, None]
+    at = np.array([bar.fit.outline for bar in bars])
+    lift = np.hypot(*(at - tails).transpose(3, 0, 1, 2)).min(axis=2)
+    near = lift < 1.001 * LIFT * np.hypot(*(at - tips).transpose(3, 0, 1, 2)).max(axis=2)
+    whole, others = list(arrows), list(others)
+    for k, n in np.argwhere(near).tolist():
+        if whole[k] is arrows[k] and bars[n] in others:
+            joined = kept(_along, arrows[k], bars[n])
+            if joined is not None:
+                others.remove(bars[n])
+                whole[k] = joined
     return others + whole
+
+
+def _along(arrow: Chosen, bar: Chosen) -> Chosen | None:
+    """An arrow whose shaft begins with a bar, if that goes on where it begins."""
+    beyond = _tail_beyond(arrow.fit, bar.fit)
+    if beyond is None:
+        return None
+    fit, gain = arrow.along_with(bar)
+    return Chosen(replace(fit, outline=np.array([beyond, arrow.fit.outline[1]])), gain)
 
 
 def _tail_beyond(arrow: Fitted, bar: Fitted) -> Array | None:

@@ -14,9 +14,9 @@ looks anew at its neighbourhood, and comes to the same scene as one that gets th
 from __future__ import annotations
 
 import math
-from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,11 +32,12 @@ from sketch.merging import Chosen, merged
 from sketch.overrides import Overrides, forced_reading, normal_overrides
 from sketch.page.pieces import Page
 from sketch.page.sampling import sampled
+from sketch.patches import Likely, Patch, patches
 from sketch.reading import Reading, Rival, scored
 from sketch.scoring import Fitted
-from sketch.search import Packing, Part, part
+from sketch.search import best, part
 from sketch.shapes.cutting import things_in
-from sketch.shapes.letters import Letters
+from sketch.shapes.letters import Letter, Letters
 from sketch.shapes.placing import Placed, placed
 from sketch.shapes.proposals import Pick, Proposals, Proposed, proposing
 
@@ -56,9 +57,6 @@ FORCED = 1e6  # nats that a reading gains by having been said by the caller
 MANY = 8  # sides from which on nobody counts them
 
 
-_Gains = list[tuple[Proposed, list[float]]]  # of what some pieces proposed
-
-
 @dataclass(frozen=True, eq=False)
 class Recognition:
     """A sketch as it was understood: the scene and the readings that it was made from."""
@@ -72,19 +70,45 @@ class Recognition:
         return explain(self)
 
 
+_Ways = Sequence[
+    tuple[Proposed, tuple[float, ...]]
+]  # with what each of it gains, given what is around it [nats]
+
+
+class _Said(NamedTuple):
+    """What is said of a reading: its probability, those of the others, what it gains more [nats], and where it is."""
+
+    score: float
+    others: list[tuple[str, float]]
+    margin: float
+    place: Placed
+
+
 @dataclass(frozen=True, eq=False)
-class _Explanation:
-    """What explains all the ink best, and what it was chosen from.
+class _Settled:
+    """What explains the ink of one patch best.
 
     Attributes:
-        proposed: by each piece in the order of drawing, then by the caller, then what is no part of the scene.
-        told: the gains of all that was proposed, with what is around it [nats].
-        chosen: the best of it, each piece in one at most.
+        ways: what its pieces propose, what the caller says of it, and what it may be that is no part of the scene.
+        said: of the best of these, each piece in one at most; None of what is no part of the scene.
+    """
+
+    ways: _Ways
+    said: dict[Chosen, _Said | None]
+
+
+@dataclass(frozen=True, eq=False)
+class _Explanation:
+    """What explains all the ink best.
+
+    Attributes:
+        patches: each by itself.  of: of each piece its patch.
+        chosen: the best of all that is proposed, each piece in one at most.
         elsewhere: the pieces of arrows that mean something else than gravity.
     """
 
-    proposed: list[Proposed]
-    told: list[list[float]]
+    patches: list[_Settled]
+    of: dict[int, int]
     chosen: list[Chosen]
     elsewhere: set[int]
 
@@ -132,13 +156,6 @@ class Recognizer:
         self._context = Context()
         self._letters = Letters()
         self._kept = Kept()
-        self._alone = Packing()
-        self._together = Packing()
-        # of each the gains with all that is around, and what the search makes of these
-        self._parts: dict[Proposed, tuple[list[float], Part]] = {}
-        self._places: dict[Fitted, Placed] = {}
-        # of each reading, given what it and its rivals gain, its probability, theirs, and what it gains more
-        self._scores: dict[Fitted, tuple[float, _Gains, float, list[tuple[str, float]], float]] = {}
         self._strokes: dict[int, Stroke] = {}
         self._pieces: dict[int, list[int]] = {}  # of each stroke the things drawn in it: mostly one
         self._count = 0
@@ -168,6 +185,11 @@ class Recognizer:
         del self._strokes[key]
         for piece in self._pieces.pop(key):
             self._proposals.remove(piece)
+
+    @property
+    def made(self) -> int:
+        """How many results were reckoned up to now that were not known: the work of reading, but for its bounds."""
+        return self._kept.made
 
     @property
     def sketch(self) -> Sketch:
@@ -206,96 +228,98 @@ class Recognizer:
 
     def _explained(self, forced: Overrides) -> _Explanation:
         """What is proposed, and what of it explains all the ink best. forced: by their pieces."""
-        proposed = self._proposals.all()
+        page, kept, proposed = self._proposals.page, self._kept, self._proposals.all()
+        said = None
         if forced:
-            proposed = _with_forced(self._proposals.page, proposed, forced)
-        page = self._proposals.page
+            proposed, said = _with_forced(page, proposed, forced)
         # the strokes of a picture were chosen by what they mean else: pieces of a mark, not of a word
         letters = self._letters.possible(page, proposed) if self._canvas.picture is None else []
-        sure = (letter.proposed for letter in letters if not letter.marks)
-        likely = self._alone.best([p.alone for p in (*proposed, *sure)])
-        likely = [pick for pick in likely if pick[0] < len(proposed)]
-        told = self._context.told(proposed, likely, page.size, page.drawn)
-        told, elsewhere, pointed = pointing(page, proposed, told, likely)
+        more = [*(letter.proposed.ink for letter in letters), *([said.ink] if said else [])]
+        every, at = patches(list(page.pieces), proposed, more, kept)
+        of, count = dict(zip(page.pieces, at, strict=True)), len(every)
+        ways = [[n] for n in range(count)]  # of each patch what it may be, and below which letters
+        if said:
+            ways[of[said.ink[0]]].append(count)
+            every.append(Patch((said,)))
+        written_there: list[list[Letter]] = [[] for _ in ways]
+        for letter in letters:
+            written_there[of[letter.proposed.ink[0]]].append(letter)
+        picked: list[list[int]] = [[] for _ in every]
+        for own, there in zip(ways, written_there, strict=True):
+            sure = (letter.proposed.alone for letter in there if not letter.marks)
+            for q, k in kept.through(best, *(every[n].whole.alone for n in own), *sure):
+                if q < len(own):
+                    picked[own[q]].append(k)
+        likely = [kept(Likely, patch, tuple(ks)) for patch, ks in zip(every, picked, strict=True)]
+        wholes = [patch.whole for patch in every]
+        told = self._context.told(likely, page.size, page.drawn)
+        told, elsewhere, pointers = pointing(page, likely, told, count, kept)
         left = (its for key, its in self._pieces.items() if self._strokes[key].remains)
         remains = frozenset(i for its in left for i in its)
-        told = written(page, proposed, told, likely, elsewhere, remains)
-        known = {i: (p.gains, gains) for i, p, gains in zip(page.pieces, proposed, told, strict=False)}
-        aside = [*(letter.proposed for letter in letters if not letter.is_none(known)), pointed]
-        proposed, told = [*proposed, *aside], [*told, *(p.gains for p in aside)]
-        told, chosen = self._lending(proposed, told)
+        told = written(page, likely, told, elsewhere, remains, kept)
+        settled = []
+        for n, (own, there) in enumerate(zip(ways, written_there, strict=True)):
+            aside = [t.proposed for t in there if not (t.marks and t.is_none(wholes[n], told[n]))]
+            aside += [pointers[w] for w in own if w in pointers]
+            its = *((wholes[w], tuple(told[w])) for w in own), *((p, tuple(p.gains)) for p in aside)
+            settled.append(kept.through(_settled, page, *its))
+        chosen = [c for patch in settled for c in patch.said]
         elsewhere = {i for c in chosen if c.fit.kind == "pointer" for i in c.fit.pieces}
         chosen = [c for c in chosen if c.fit.kind not in NO_PART]
-        return _Explanation(proposed, told, merged(chosen), elsewhere)
-
-    def _lending(
-        self, proposed: list[Proposed], told: list[list[float]]
-    ) -> tuple[list[list[float]], list[Chosen]]:
-        """The gains without what borrows a side of no body, and the best set of readings by them.
-
-        A body lends its side, an arrow or an X none: that is known of the whole answer alone.
-        """
-        best = self._packed(proposed, told)
-        for _ in range(LENDING):
-            lost = _not_lent([proposed[p].candidates[k] for p, k in best])
-            if not lost:
-                break
-            told = [
-                [gain - NOT_LENT * (c.lender in lost) for c, gain in zip(p.candidates, gains, strict=True)]
-                if p.borrowing
-                else gains
-                for p, gains in zip(proposed, told, strict=True)
-            ]
-            best = self._packed(proposed, told)
-        chosen = [Chosen(proposed[p].candidates[k], told[p][k]) for p, k in best]
-        lost = _not_lent([c.fit for c in chosen])
-        return told, [c for c in chosen if c.fit.lender not in lost]
+        return _Explanation(settled, of, merged(chosen, kept), elsewhere)
 
     def _readings(self, best: _Explanation, stroke: Mapping[int, int]) -> list[Reading]:
         """What was chosen, each with the others of the same ink as probabilities. stroke: of each piece."""
-        page = self._proposals.page
-        self._places = {c.fit: self._places.get(c.fit) or placed(page, c.fit) for c in best.chosen}
-        leads = {i: k for k, i in enumerate(page.pieces)}  # each piece proposes what its ink may be,
-        further = defaultdict[tuple[int, ...], list[int]](list)  # and what comes after, of the same ink
-        for k in range(len(leads), len(best.proposed)):
-            for fit in best.proposed[k].candidates:
-                further[fit.pieces].append(k)
-        known, self._scores = self._scores, {}
         readings = []
         for c in best.chosen:
-            by = (*map(leads.__getitem__, c.fit.pieces), *further[c.fit.pieces])
-            gains = [(best.proposed[k], best.told[k]) for k in by]
-            there = known.get(c.fit)
-            if there is None or there[:2] != (c.gain, gains):
-                rivals = _rivals(c, gains)
-                there = c.gain, gains, *scored(rivals), min(rival.behind for rival in rivals)
-            self._scores[c.fit] = there
-            _, _, score, others, margin = there
-            place = self._places[c.fit]
+            its = best.patches[best.of[c.fit.pieces[0]]].said.get(c)
+            if its is None:  # it was merged of several
+                among = dict.fromkeys(best.patches[best.of[i]] for i in c.fit.pieces)
+                its = self._kept(_said_among, self._proposals.page, c, *among)
             readings.append(
                 Reading(
                     KINDS.get(c.fit.kind, c.fit.kind),
                     tuple(sorted({stroke[i] for i in c.fit.pieces})),
-                    score,
-                    place.outline,
-                    list(others),
+                    its.score,
+                    its.place.outline,
+                    list(its.others),
                     c.gain,
-                    margin=margin,
+                    margin=its.margin,
                     rough=c.fit.rough,
-                    error=place.error,
+                    error=its.place.error,
                 )
             )
         return readings
 
-    def _packed(self, proposed: list[Proposed], told: list[list[float]]) -> list[Pick]:
-        """The best set of readings, each ink in one, given what all of them gain."""
-        known, self._parts = self._parts, {}
-        for p, gains in zip(proposed, told, strict=True):
-            there = known.get(p)
-            if there is None or there[0] != gains:
-                there = gains, p.alone if gains == p.gains else part([c.pieces for c in p.candidates], gains)
-            self._parts[p] = there
-        return self._together.best([self._parts[p][1] for p in proposed])
+
+def _settled(kept: Kept, page: Page, *ways: tuple[Proposed, tuple[float, ...]]) -> _Settled:
+    """The best set of readings of a patch, without what borrows a side of no body.
+
+    A body lends its side, an arrow or an X none: that is known of the whole answer alone.
+    """
+    picks = _packed(kept, ways)
+    for _ in range(LENDING):
+        lost = _not_lent([ways[n][0].candidates[k] for n, k in picks])
+        if not lost:
+            break
+        ways = tuple((p, _without(p, gains, lost) if p.borrowing else gains) for p, gains in ways)
+        picks = _packed(kept, ways)
+    chosen = [Chosen(ways[n][0].candidates[k], ways[n][1][k]) for n, k in picks]
+    lost = _not_lent([c.fit for c in chosen])
+    left = [c for c in chosen if c.fit.lender not in lost]
+    return _Settled(ways, {c: None if c.fit.kind in NO_PART else _said(page, c, ways) for c in left})
+
+
+def _packed(kept: Kept, ways: _Ways) -> list[Pick]:
+    """The best set of readings, each ink in one."""
+    return best(kept, *(part([c.pieces for c in p.candidates], gains) for p, gains in ways))
+
+
+def _without(proposed: Proposed, gains: Sequence[float], lost: set[int]) -> tuple[float, ...]:
+    """The gains, less for what borrows a side of some pieces."""
+    return tuple(
+        gain - NOT_LENT * (c.lender in lost) for c, gain in zip(proposed.candidates, gains, strict=True)
+    )
 
 
 def _not_lent(chosen: list[Fitted]) -> set[int]:
@@ -304,8 +328,10 @@ def _not_lent(chosen: list[Fitted]) -> set[int]:
     return {c.lender for c in chosen if c.lender >= 0} - solid
 
 
-def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> list[Proposed]:
-    """What leaves the forced strokes alone, and their forced readings."""
+def _with_forced(
+    page: Page, proposed: list[Proposed], forced: Overrides
+) -> tuple[list[Proposed], Proposed | None]:
+    """What leaves the forced strokes alone, and their forced readings, if there are any."""
     taken = {s for strokes in forced for s in strokes}
     out = []
     for p in proposed:
@@ -316,7 +342,7 @@ def _with_forced(page: Page, proposed: list[Proposed], forced: Overrides) -> lis
             out.append(p)
     found = [forced_reading(page, strokes, kind) for strokes, kind in forced.items()]
     extra = [f for f in found if f is not None]
-    return [*out, proposing(extra, [FORCED] * len(extra))]
+    return out, proposing(extra, [FORCED] * len(extra)) if extra else None
 
 
 # ---------------------------------------------------------------- readings of what was chosen
@@ -331,10 +357,21 @@ def _mark_forced(readings: list[Reading], forced: Overrides) -> None:
             reading.forced = "ignore"
 
 
-def _rivals(chosen: Chosen, proposed: list[tuple[Proposed, list[float]]]) -> list[Rival]:
+def _said(page: Page, chosen: Chosen, ways: _Ways) -> _Said:
+    """What is said of a reading, given all that its ink may mean."""
+    rivals = _rivals(chosen, ways)
+    return _Said(*scored(rivals), min(rival.behind for rival in rivals), placed(page, chosen.fit))
+
+
+def _said_among(page: Page, chosen: Chosen, *patches: _Settled) -> _Said:
+    """Likewise of one whose ink is in several patches."""
+    return _said(page, chosen, [way for patch in patches for way in patch.ways])
+
+
+def _rivals(chosen: Chosen, ways: _Ways) -> list[Rival]:
     """What the same ink as a reading's may mean else: of each meaning the best.
 
-    proposed: by its pieces, with the gains.
+    ways: all that may be of its pieces, with the gains.
     """
     fit, gain = chosen
     own = _meaning(fit)
@@ -348,7 +385,7 @@ def _rivals(chosen: Chosen, proposed: list[tuple[Proposed, list[float]]]) -> lis
             best[meaning, alike] = Rival(its, less, alike)
 
     add("unread", "unread", gain)
-    for p, gains in proposed:
+    for p, gains in ways:
         for other, its in zip(p.candidates, gains, strict=True):
             if other.pieces == fit.pieces:
                 meaning, (sides, more) = _meaning(other), other.next

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sketch.kept import Kept
 from sketch.typing import Array
 
-__all__ = ["Packing", "Part", "part"]
+__all__ = ["Part", "best", "part"]
 
 Group = tuple[int, ...]  # of pieces of ink
 Packed = tuple[Group, float]  # and what it gains
@@ -66,49 +67,31 @@ def part(groups: Sequence[Group], gains: Sequence[float]) -> Part:
     return Part(inks, its, index, tuple({i for group in inks for i in group}), hash((inks, its)))
 
 
-class Packing:
-    """The best packing of a page whose groups change a little at a time: what did not change is not solved again.
+def best(kept: Kept, *parts: Part) -> list[tuple[int, int]]:
+    """Pairwise disjoint groups of some parts whose gains (> 0) add up to the most: the part, and the index in it, of
+    each. Ink that no chosen group has stays unexplained, and gains nothing.
 
-    Groups that share ink, however indirectly, form a cluster, which is solved by itself. A group in whose ink others
-    gain no less is in no best packing; without those most clusters fall apart.
+    Groups that share ink, however indirectly, form a cluster, which is solved by itself, and what did not change is
+    not solved again. A group in whose ink others gain no less is in no best packing; without those most clusters fall
+    apart.
     """
+    chosen: list[tuple[int, int]] = []
+    for cluster in _clusters([own.pieces for own in parts]):
+        for q, k in kept.through(_solved, *map(parts.__getitem__, cluster)):
+            chosen.append((cluster[q], k))
+    return chosen
 
-    def __init__(self) -> None:
-        self._clusters: dict[tuple[Part, ...], list[tuple[int, int]]] = {}
-        self._packed: dict[tuple[Packed, ...], list[int]] = {}
 
-    def best(self, parts: Sequence[Part]) -> list[tuple[int, int]]:
-        """Pairwise disjoint groups of some parts whose gains (> 0) add up to the most: the part, and the index in it,
-        of each. Ink that no chosen group has stays unexplained, and gains nothing."""
-        chosen: list[tuple[int, int]] = []
-        clusters, self._clusters = self._clusters, {}
-        packed, self._packed = self._packed, {}
-        for cluster in _clusters([own.pieces for own in parts]):
-            key = tuple(parts[p] for p in cluster)
-            best = clusters.get(key)
-            if best is None:
-                at = [(q, k) for q, own in enumerate(key) for k in range(len(own.groups))]
-                best = [
-                    at[g]
-                    for g in self._solve(
-                        [g for own in key for g in zip(own.groups, own.gains, strict=True)], packed
-                    )
-                ]
-            self._clusters[key] = best
-            chosen += [(cluster[q], key[q].index[k]) for q, k in best]
-        return chosen
-
-    def _solve(self, groups: list[Packed], known: dict[tuple[Packed, ...], list[int]]) -> list[int]:
-        """The best packing of a cluster, as indices."""
-        groups_left = _not_outdone(groups)
-        chosen = []
-        for cluster in _clusters([groups[g][0] for g in groups_left]):
-            its = [groups_left[k] for k in cluster]
-            key = tuple(groups[g] for g in its)
-            best = known.get(key)
-            self._packed[key] = best = _packed(key) if best is None else best
-            chosen += [its[k] for k in best]
-        return chosen
+def _solved(kept: Kept, *parts: Part) -> list[tuple[int, int]]:
+    """The best packing of a cluster: the part, and the index in it, of each."""
+    groups = [g for own in parts for g in zip(own.groups, own.gains, strict=True)]
+    at = [(q, k) for q, own in enumerate(parts) for k in own.index]
+    left = _not_outdone(groups)
+    chosen = []
+    for cluster in _clusters([groups[g][0] for g in left]):
+        its = [left[k] for k in cluster]
+        chosen += [at[its[k]] for k in kept(_packed, tuple(groups[g] for g in its))]
+    return chosen
 
 
 def _clusters(inks: Sequence[Group]) -> list[list[int]]:

@@ -4,17 +4,19 @@ one place are a pair of axes, and a line with a head at either end says how long
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from sketch.kept import Kept
 from sketch.kernel import depths
-from sketch.page.near import overlap
+from sketch.page.near import Boxes, boxes_around, overlap
 from sketch.page.pieces import Page, Piece
+from sketch.patches import Likely
 from sketch.scoring import Fitted
-from sketch.shapes.proposals import Pick, Proposed, Row, proposing
-from sketch.typing import Array
+from sketch.shapes.proposals import Pick, Proposed, proposing
+from sketch.typing import Array, Box
 
 __all__ = ["likeliest_arrow", "pointing", "prefer_arrow"]
 
@@ -44,20 +46,20 @@ SIDES = 0.015  # of its length: as far they reach to either side of it
 
 
 def pointing(
-    page: Page, proposed: list[Proposed], told: list[list[float]], likely: list[Pick]
-) -> tuple[list[list[float]], set[int], Proposed]:
+    page: Page, every: Sequence[Likely], told: list[list[float]], by_ink: int, kept: Kept
+) -> tuple[list[list[float]], set[int], dict[int, Proposed]]:
     """Gains, with one arrow likelier and the others rarer; the pieces of likely arrows that mean something else; and
-    all that do, as pointers, with what they gain by their ink.
+    all that do, as pointers, with what they gain by their ink, by patch.
 
-    told: the gains of all that is proposed.  likely: which of it the ink makes likely.
+    every: what the ink makes likely of each patch.  told: the gains of all that is proposed.  by_ink: how many patches
+    are not said by the caller.
     """
-    by_ink = proposed[: len(page.pieces)]  # and not said by the caller
-    every = [(n, k) for n, p in enumerate(by_ink) for k in p.arrows if told[n][k] > -ONE_ARROW]
-    if not every:
-        return told, set(), proposing([], [])
-    arrows = [proposed[n].candidates[k] for n, k in every]
-    chosen = [(proposed[n].candidates[k], proposed[n].rows[k]) for n, k in likely]
-    found = dict(zip(every, _losses(page, arrows, chosen), strict=True))
+    proposed = [own.patch.whole for own in every]
+    arrows = [(n, k) for n, p in enumerate(proposed[:by_ink]) for k in p.arrows if told[n][k] > -ONE_ARROW]
+    if not arrows:
+        return told, set(), {}
+    likely = [(n, k) for n, own in enumerate(every) for k in own.which]
+    found = dict(zip(arrows, _losses(page, every, arrows, kept), strict=True))
     others = (proposed[n].candidates[k] for n, k in likely if found.get((n, k), (0.0, AWAY))[1] >= ALONG)
     taken = {i for c in others if c.kind != "bar" for i in c.pieces}
     most_away = AWAY
@@ -88,12 +90,17 @@ def pointing(
         own[k] -= loss
     if first is not None:
         most = rarer[first[0]][first[1]] + ONE_ARROW - SECOND
-        prefer_arrow(proposed, rarer, every, first, most)
-    pointed = proposing(
-        [replace(proposed[n].candidates[k], kind="pointer") for n, k in pointers],
-        [proposed[n].gains[k] - ONE_ARROW for n, k in pointers],
+        prefer_arrow(proposed, rarer, arrows, first, most)
+    by = {n: tuple(k for m, k in pointers if m == n) for n, _ in pointers}
+    return rarer, other, {n: kept(_pointers, proposed[n], its) for n, its in by.items()}
+
+
+def _pointers(proposed: Proposed, which: tuple[int, ...]) -> Proposed:
+    """Some of the arrows that are proposed, as they mean something else than gravity."""
+    return proposing(
+        [replace(proposed.candidates[k], kind="pointer") for k in which],
+        [proposed.gains[k] - ONE_ARROW for k in which],
     )
-    return rarer, other, pointed
 
 
 def likeliest_arrow(
@@ -126,26 +133,63 @@ def prefer_arrow(
             told[n][k] += ONE_ARROW
 
 
-def _losses(page: Page, arrows: list[Fitted], likely: list[tuple[Fitted, Row]]) -> list[tuple[float, float]]:
+def _losses(
+    page: Page, likely: Sequence[Likely], arrows: list[Pick], kept: Kept
+) -> list[tuple[float, float]]:
     """Nats that each of some arrows is rarer as gravity than by its ink; and how far it leads away from a body that it
     begins at, as a share of its length, infinite if it means something else for sure.
 
-    likely: what the ink makes likely, with where it lies, as of `Proposed`.
+    likely: what the ink makes so, of each patch.
     """
-    ends = np.array([arrow.outline for arrow in arrows])
-    longs = np.maximum(np.hypot(*(ends[:, 1] - ends[:, 0]).T), 1e-9)
-    bodies = [c for c, _ in likely if c.closed]
-    boxes = np.array([row[:4] for c, row in likely if c.closed]).reshape(-1, 4)
+    marks = [(c, row) for own in likely for c, row in own.chosen if c.closed or c.kind == "arrow"]
+    boxes = Boxes(np.array([row[:4] for _, row in marks]).reshape(-1, 4))
+    taken = {i for own in likely for c, _ in own.closed for i in c.pieces}
+    which: dict[int, list[int]] = {}
+    for n, k in arrows:
+        which.setdefault(n, []).append(k)
+    found = []
+    for n, ks in which.items():
+        proposed = likely[n].patch.whole
+        box = kept(_surroundings, proposed)
+        near = tuple(marks[k][0] for k in boxes.touching(box))
+        idle = tuple(p for p in page.around(*box) if p.index not in taken)
+        found += kept(_losses_there, page, proposed, tuple(ks), near, idle)
+    return found
+
+
+def _surroundings(proposed: Proposed) -> Box:
+    """The box that has all that says what the arrows of a patch mean."""
+    ends, longs = _ends([proposed.candidates[k] for k in proposed.arrows])
     reach = NEAR * longs[:, None]
-    near = overlap(boxes, np.concatenate([ends.min(axis=1) - reach, ends.max(axis=1) + reach], axis=1))
-    taken = {i for body in bodies for i in body.pieces}
-    idle = [p for i, p in page.pieces.items() if i not in taken]
-    elsewhere = _axes(arrows, ends, longs, [c for c, _ in likely if c.kind == "arrow"])
-    elsewhere |= _two_headed(page, arrows, ends, longs, idle)
+    (x0, y0), (x1, y1) = (ends.min(axis=1) - reach).min(axis=0), (ends.max(axis=1) + reach).max(axis=0)
+    return float(x0), float(y0), float(x1), float(y1)
+
+
+def _ends(arrows: list[Fitted]) -> tuple[Array, Array]:
+    """Tails and tips of some arrows [pixels], (n, 2, 2), and how long these are."""
+    ends = np.array([arrow.outline for arrow in arrows])
+    return ends, np.maximum(np.hypot(*(ends[:, 1] - ends[:, 0]).T), 1e-9)
+
+
+def _losses_there(
+    page: Page, proposed: Proposed, which: tuple[int, ...], near: tuple[Fitted, ...], idle: tuple[Piece, ...]
+) -> list[tuple[float, float]]:
+    """As of `_losses`, of some arrows of one patch, given what is likely in their surroundings, and the pieces there of
+    no body."""
+    arrows = [proposed.candidates[k] for k in which]
+    ends, longs = _ends(arrows)
+    bodies = [c for c in near if c.closed]
+    likely = [c for c in near if c.kind == "arrow"]
+    elsewhere = _axes(arrows, ends, longs, likely) if likely else set()
+    if idle:
+        elsewhere |= _two_headed(page, arrows, ends, longs, idle)
     apart: list[list[Fitted]] = [[] for _ in arrows]
-    for k, b in np.argwhere(near).tolist():
-        if set(arrows[k].pieces).isdisjoint(bodies[b].pieces):
-            apart[k].append(bodies[b])
+    if bodies:
+        boxes, reach = boxes_around([c.outline for c in bodies]), NEAR * longs[:, None]
+        beside = overlap(boxes, np.concatenate([ends.min(axis=1) - reach, ends.max(axis=1) + reach], axis=1))
+        for k, b in np.argwhere(beside).tolist():
+            if set(arrows[k].pieces).isdisjoint(bodies[b].pieces):
+                apart[k].append(bodies[b])
     return [
         (0.0, math.inf) if k in elsewhere else _beside(ends[k], long, apart[k]) if apart[k] else (0.0, 0.0)
         for k, long in enumerate(longs.tolist())
@@ -176,7 +220,9 @@ def _axes(arrows: list[Fitted], ends: Array, longs: Array, likely: list[Fitted])
     return {k for k, j in np.argwhere(pair).tolist() if set(arrows[k].pieces).isdisjoint(likely[j].pieces)}
 
 
-def _two_headed(page: Page, arrows: list[Fitted], ends: Array, longs: Array, idle: list[Piece]) -> set[int]:
+def _two_headed(
+    page: Page, arrows: list[Fitted], ends: Array, longs: Array, idle: Sequence[Piece]
+) -> set[int]:
     """At the tails of which arrows there is ink, on both sides, that means nothing else."""
     boxes = np.array([p.box for p in idle]).reshape(-1, 4)
     tails, reach = ends[:, 0], AT_TAIL * longs

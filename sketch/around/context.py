@@ -4,13 +4,17 @@ equal."""
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from itertools import accumulate, chain, islice
 
 import numpy as np
 
 from sketch.around.pins import PINNED, REACH, is_over, stands_on
 from sketch.around.writing import LARGEST, WITHIN, WRITTEN
 from sketch.kernel import beside, depth, gap
+from sketch.kernel import held as ends_held
+from sketch.patches import Likely
 from sketch.scoring import Fitted
 from sketch.shapes.proposals import Pick, Proposed, Row
 from sketch.typing import Array, Point
@@ -54,25 +58,23 @@ class Context:
         self._bodies: Around = {}
         self._sizes = (0.0, 0.0)
 
-    def told(
-        self, proposed: list[Proposed], likely: list[Pick], size: float, drawn: float
-    ) -> list[list[float]]:
-        """The gains of all that is proposed, given the bodies that the ink by itself makes likely.
+    def told(self, likely: Sequence[Likely], size: float, drawn: float) -> list[list[float]]:
+        """The gains of all that is proposed, by patch, given the bodies that the ink by itself makes likely.
 
-        likely: which of it they are.  size: of the page [pixels]; what is small on it may be a letter.  drawn: of
-        what is drawn on it [pixels]; what is small in that is no part of it.
+        size: of the page [pixels]; what is small on it may be a letter.  drawn: of what is drawn on it [pixels]; what
+        is small in that is no part of it.
         """
-        chosen = [(proposed[p].candidates[k], proposed[p].rows[k]) for p, k in likely]
-        bars = {c: p for (p, _), (c, _) in zip(likely, chosen, strict=True) if c.kind == "bar"}
-        bodies = {c: row for c, row in chosen if c.closed or c.kind == "cross"}
-        held = _held(proposed, bodies)
-        for n, p in enumerate(proposed if held else ()):  # rods, though their ink may go around with others
-            bars |= {c: n for k in p.bars if (c := p.candidates[k]) in held and p.gains[k] > 0}
-        courses = {c: proposed[n].course(c) for c, n in bars.items()}
-        bodies |= {c: row for c, (_, row) in courses.items()}
-        others = {
-            c: row for c, row in (self._bodies | bodies).items() if c not in bodies or c not in self._bodies
-        }
+        proposed = [p for own in likely for p in own.patch.proposed]
+        bodies = dict(body for own in likely for body in own.bodies)
+        courses = {line: (course, row) for own in likely for line, course, row in own.lines}
+        held: dict[Fitted, int] = {}
+        for p, k, count in _held(likely):
+            line = p.candidates[k]
+            held[line] = count
+            if p.gains[k] > 0:  # rods, though their ink may go around with others
+                courses[line] = p.course(line)
+        bodies |= {line: row for line, (_, row) in courses.items()}
+        others = {c: self._bodies.get(c) or bodies[c] for c in self._bodies.keys() ^ bodies.keys()}
         known = self._known if (size, drawn) == self._sizes else {}
         stay = [k for k, p in enumerate(proposed) if p in known]
         kept = set(stay).difference(stay[k] for k, _ in _beside([proposed[k] for k in stay], others))
@@ -85,29 +87,26 @@ class Context:
         told = [_told(p, near[k], size, drawn) if k in near else known[p] for k, p in enumerate(proposed)]
         self._known = dict(zip(proposed, told, strict=True))
         self._bodies, self._sizes = bodies, (size, drawn)
-        out = list(told)
-        for n, k in _letters(proposed, likely, LETTER * size, self._gaps):
-            out[n] = own = list(told[n]) if out[n] is told[n] else out[n]
-            own[k] -= TOUCHING
+        gains = iter(told)
+        out = [list(chain.from_iterable(islice(gains, len(own.patch.proposed)))) for own in likely]
+        for n, k in _letters(likely, LETTER * size, self._gaps):
+            out[n][k] -= TOUCHING
         return out
 
 
-def _held(proposed: list[Proposed], bodies: Around) -> dict[Fitted, int]:
-    """How many ends of each open line that is proposed are in a ring among the likely bodies, if any is."""
-    rings = [(*c.middle, row[4]) for c, row in bodies.items() if c.closed]
-    ends = [p.ends for p in proposed if p.bars] if rings else []
-    if not ends:
-        return {}
-    lines = [p.candidates[k] for p in proposed for k in p.bars]
-    places, (x, y, wide) = np.concatenate(ends), np.array(rings).T
-    along = places[:, 1] - places[:, 0]
-    long = np.hypot(*along.T)[:, None]
-    u, v = x - places[:, :1, 0], y - places[:, :1, 1]
-    through = np.abs(along[:, :1] * v - along[:, 1:] * u) < THROUGH_RING * wide * long
-    away2 = (places[:, :, :1] - x) ** 2 + (places[:, :, 1:] - y) ** 2
-    its = (away2 < (REACH * wide) ** 2) & (through & (PINNED * wide < long))[:, None]
-    held = its.any(axis=2).sum(axis=1).tolist()
-    return {line: count for line, count in zip(lines, held, strict=True) if count}
+def _held(likely: Sequence[Likely]) -> Iterator[tuple[Proposed, int, int]]:
+    """The open lines that are proposed of which rings among the likely bodies hold an end or both: of what a patch
+    proposes which it is, and how many ends."""
+    rings = [ring for own in likely for ring in own.rings]
+    leading = [own.patch.whole for own in likely if own.patch.whole.bars] if rings else []
+    if not leading:
+        return
+    lines = np.concatenate([p.ends for p in leading])
+    counts = ends_held(lines, np.array(rings), REACH, THROUGH_RING, PINNED)
+    first = list(accumulate((len(p.bars) for p in leading), initial=0))
+    for line in np.flatnonzero(counts).tolist():
+        by = bisect_right(first, line) - 1
+        yield leading[by], leading[by].bars[line - first[by]], int(counts[line])
 
 
 def _beside(proposed: list[Proposed], bodies: Around) -> list[list[int]]:
@@ -155,52 +154,52 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
     return gains
 
 
-def _taken(proposed: list[Proposed], likely: list[Pick], *but: str) -> set[int]:
-    """The pieces of what is likely, but of some kinds."""
-    chosen = (proposed[p].candidates[k] for p, k in likely)
-    return {i for c in chosen if c.kind not in but for i in c.pieces}
-
-
-def _letters(proposed: list[Proposed], likely: list[Pick], largest: float, known: Gaps) -> list[Pick]:
+def _letters(likely: Sequence[Likely], largest: float, known: Gaps) -> list[Pick]:
     """Bars no larger than `largest` [pixels] that touch or cross one another, with no small circle there to join them.
 
     A letter, an asterisk, a battery's sign are that; rods that are meant to do something are joined, or large.
     known: gaps of the last time, replaced by those of this one.
     """
-    taken = _taken(proposed, likely, "bar", "cross")
-    pins = [c.middle for c in (proposed[p].candidates[k] for p, k in likely) if c.kind == "circle"]
-    readings: dict[
-        tuple[int, ...], list[Pick]
-    ] = {}  # a stroke too short or bent for a rod is in a letter too
-    for n, p in enumerate(proposed):
-        for k in p.bars:
-            if taken.isdisjoint(p.candidates[k].pieces):
-                readings.setdefault(p.candidates[k].pieces, []).append((n, k))
-    bars: list[tuple[Row, Fitted]] = []
-    for (n, k), *_ in readings.values():
-        row = proposed[n].rows[k]
-        if row[4] < largest:
-            bars.append((row, proposed[n].candidates[k]))
+    pins = [pin for own in likely for pin in own.pins]
+    # a stroke too short or bent for a rod is in a letter too
+    bars = [
+        (row, c, [(n, k) for k in ks])
+        for n, own in enumerate(likely)
+        for c, row, ks in own.bars
+        if row[4] < largest
+    ]
     bars.sort(key=lambda t: t[0])
     found: set[Pick] = set()
     now: Gaps = {}
-    longest = max((row[4] for row, _ in bars), default=0.0)
-    for a, ((_, y0, x1, y1, extent), c) in enumerate(bars):
-        for (left, top, _, bottom, wide), other in bars[a + 1 :]:
-            if left > x1 + NEAR_BY * longest:
-                break
-            if not set(c.pieces).isdisjoint(other.pieces) or min(extent, wide) < TAP * max(extent, wide):
-                continue
-            reach = NEAR_BY * max(extent, wide)
-            if left > x1 + reach or top > y1 + reach or bottom < y0 - reach:
-                continue
-            pair = c, other
-            apart, at = now[pair] = known.get(pair) or gap(c.outline, other.outline)
-            if apart <= reach and not any(math.dist(pin, at) < 2 * reach for pin in pins):
-                found.update(readings[c.pieces], readings[other.pieces])
+    for a, b in _near_by([row for row, *_ in bars]):
+        ((*_, extent), c, its), ((*_, wide), other, others) = bars[a], bars[b]
+        if not set(c.pieces).isdisjoint(other.pieces) or min(extent, wide) < TAP * max(extent, wide):
+            continue
+        reach = NEAR_BY * max(extent, wide)
+        pair = c, other
+        apart, at = now[pair] = known.get(pair) or gap(c.outline, other.outline)
+        if apart <= reach and not _is_pinned(at, 2 * reach, pins):
+            found.update(its, others)
     known.clear()
     known.update(now)
     return sorted(found)
+
+
+def _is_pinned(at: Point, reach: float, pins: list[Point]) -> bool:
+    """Whether a pin is nearer to a place than so much."""
+    x, y = at
+    return any(abs(u - x) < reach and abs(v - y) < reach and math.dist((u, v), at) < reach for u, v in pins)
+
+
+def _near_by(rows: list[Row]) -> list[list[int]]:
+    """Pairs of bars, given where they are, whose boxes are no further apart than NEAR_BY of the larger one's extent."""
+    if len(rows) < 2:
+        return []
+    x0, y0, x1, y1, extent = np.array(rows).T
+    reach = NEAR_BY * np.maximum(extent, extent[:, None])
+    far = (x0 > x1[:, None] + reach) | (y0 > y1[:, None] + reach)
+    pairs: list[list[int]] = np.argwhere(np.triu(~(far | far.T), 1)).tolist()
+    return pairs
 
 
 class _Bodies:

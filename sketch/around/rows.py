@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Collection, Sequence, Set
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 
 from sketch.kernel import words
 from sketch.page.pieces import Page
@@ -35,7 +35,7 @@ def near_one_another(page: Page, largest: float, idle: Set[int]) -> dict[int, li
     return near
 
 
-def _joined(near: dict[int, list[int]], start: int) -> list[int]:
+def _joined(near: Mapping[int, Sequence[int]], start: int) -> list[int]:
     """A stroke and all that are near it, near these, and so on."""
     found, known = [start], {start}
     for i in found:  # it grows meanwhile
@@ -50,15 +50,14 @@ class Rows:
 
     Attributes:
         of: by stroke, the idle ones in its row: TALL times their extents, in order, and which they are.
-        middles: of the boxes around the idle ones [pixels].
     """
 
-    def __init__(self, page: Page, near: dict[int, list[int]], idle: Set[int]) -> None:
-        """near: of each small stroke the others that may be in one word with it."""
+    def __init__(
+        self, page: Page, near: Mapping[int, Sequence[int]], idle: Set[int], others: Iterable[Rows] = ()
+    ) -> None:
+        """near: of each small stroke the others that may be in one word with it.  others: rows of other strokes."""
         self.of: dict[int, tuple[list[float], list[int]]] = {}
-        self._near = near
-        boxes = ((i, page.pieces[i].box) for i in near.keys() & idle)
-        self.middles = {i: ((x0 + x1) / 2, (y0 + y1) / 2) for i, (x0, y0, x1, y1) in boxes}
+        self._near = dict(near)
         self._idle = {i: TALL * page.pieces[i].extent for i in near.keys() & idle}
         for start in self._idle:
             if start in self.of:
@@ -69,6 +68,10 @@ class Rows:
             for tall, i in sorted((self._idle[i], i) for i in row if i in self._idle):
                 its[0].append(tall)
                 its[1].append(i)
+        for rows in others:
+            self.of |= rows.of
+            self._near |= rows._near
+            self._idle |= rows._idle
 
     def beside(self, pieces: Sequence[int], extent: float) -> int:
         """How many idle strokes, large enough for one of some extent [pixels], some strokes stand in a row with."""

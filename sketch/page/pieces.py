@@ -66,7 +66,7 @@ class Piece:
     across: float
     given: Array | None = None
 
-    @property
+    @lazy
     def straight(self) -> float:
         """Root mean square distance from a straight line, as a share of its length."""
         return math.sqrt(self.residual[1]) / self.length
@@ -248,6 +248,10 @@ class Page:
     def touching(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:
         """The pieces whose bounding box has a point in this one."""
         self.looked.boxes.append((x0, y0, x1, y1))
+        return self.around(x0, y0, x1, y1)
+
+    def around(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:
+        """The same, asked for an answer that is not kept: nothing is noted of it."""
         return [self.pieces[i] for i in self._near.touching((x0, y0, x1, y1))]
 
     def reaching(self, a: Point, b: Point, reach: float) -> list[Piece]:

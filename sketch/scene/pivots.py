@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,10 +12,10 @@ import numpy as np
 from sketch.around.pins import is_on_line
 from sketch.kept import Kept
 from sketch.reading import Reading
-from sketch.scene.bodies import Bodies, Drawn, ids, touch
+from sketch.scene.bodies import Bodies, Drawn, touch
 from sketch.typing import Point
 
-__all__ = ["UNSURE", "Pivot", "pivots"]
+__all__ = ["UNSURE", "Pivot", "either", "pivots"]
 
 # radius of a pivot over the size of the smaller body that it joins: beyond, it is a ball or a wheel
 JOINS = 0.3
@@ -50,27 +50,28 @@ class Pivot(NamedTuple):
 
 
 def pivots(
-    bodies: Bodies,
-    readings: Mapping[Drawn, Reading],
-    names: Mapping[Drawn, str],
-    pin: float,
-    notes: list[str],
-    kept: Kept,
-) -> list[Pivot]:
+    bodies: Bodies, readings: Mapping[Drawn, Reading], pin: float, kept: Kept
+) -> tuple[list[Pivot], list[tuple[Drawn, Drawn]]]:
     """Small circles over bodies that overlap, or over one beside which they are small, become pivots.
 
     pin: radius that one to the background, or of an open line, hardly exceeds [pixels].  Returns the joints in the
-    order in which their circles were drawn.
+    order in which their circles were drawn; and the circles that are nearly as likely a ball in front of a body as its
+    pivot to the page, each with the body.
     """
     circles = [d for d in bodies.drawn if d.kind == "circle"]
     pins: dict[Drawn, _Pin] = {}
+    unsure: list[tuple[Drawn, Drawn]] = []
     for ring in sorted(circles, key=lambda d: -d.size):  # so that a pivot is asked of bodies, not of pivots
         if ring.forced in ("ball", "circle"):
             continue
         near = _around(ring, bodies)
         its = tuple(d for d in near if d in bodies.pins), tuple(d for d in near if d in bodies.fixed)
         under, further, odds = kept(_odds, ring, near, *its, pin)
-        if not under or not _is_pivot(readings[ring], [names[d] for d in under], odds, notes):
+        if not under:
+            continue
+        if not _is_pivot(readings[ring], odds):
+            if len(under) == 1 and odds > UNSURE:
+                unsure.append((ring, under[0]))
             continue
         bodies.pins.add(ring)
         again = [p for d in its[0] if (p := pins.get(d)) and _is_again(p, ring, under)]
@@ -79,12 +80,20 @@ def pivots(
         if again:
             continue
         if len(under) == 1 and odds < 1 - UNSURE:
-            notes.append(_either(readings[ring], f"a pivot of {names[under[0]]} to the page", "a ball"))
+            unsure.append((ring, under[0]))
         pins[ring] = _Pin(ring, under, further, ring.middle)
     order = {d: k for k, d in enumerate(bodies.drawn)}
     by_drawing = sorted(pins.values(), key=lambda p: order[p.ring])
     joints = [Pivot(p.under[0], p.under[1] if len(p.under) == 2 else None, p.at) for p in by_drawing]
-    return joints + _through(by_drawing, order)
+    return joints + _through(by_drawing, order), unsure
+
+
+def either(ring: Reading, body: str) -> str:
+    """What a person should know of a circle over a body that may be its pivot, or not."""
+    ways = f"a pivot of {body} to the page", "a ball"
+    if ring.kind != "pivot":
+        ways = f"a ball in front of {body}", "a pivot to the page"
+    return "the small circle of {} was taken for {}; it may be {}".format(ring.named, *ways)
 
 
 def _around(ring: Drawn, bodies: Bodies) -> tuple[Drawn, ...]:
@@ -116,7 +125,7 @@ def _odds(
     return tuple(under), tuple(further), odds
 
 
-def _is_pivot(reading: Reading, under: Sequence[str], odds: float, notes: list[str]) -> bool:
+def _is_pivot(reading: Reading, odds: float) -> bool:
     """Whether a ring is taken for a pivot; its reading says so, and what else it may be."""
     is_pivot = odds >= 0.5
     rival = ("ball", 1 - odds) if is_pivot else ("pivot", odds)
@@ -124,8 +133,6 @@ def _is_pivot(reading: Reading, under: Sequence[str], odds: float, notes: list[s
     if is_pivot:
         reading.kind = "pivot"
         reading.score *= odds
-    elif len(under) == 1 and odds > UNSURE:
-        notes.append(_either(reading, f"a ball in front of {ids(under)}", "a pivot to the page"))
     return is_pivot
 
 
@@ -295,7 +302,3 @@ def _joined(wheel: Drawn, other: Drawn, ring: Drawn, bodies: Bodies) -> bool:
         for further in rings
         if further.size < 2 * ring.size
     )
-
-
-def _either(ring: Reading, taken: str, other: str) -> str:
-    return f"the small circle of {ring.named} was taken for {taken}; it may be {other}"

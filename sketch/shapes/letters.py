@@ -41,19 +41,20 @@ class Letter:
 
     Attributes:
         proposed: that reading, and what it gains.
-        marks: readings of its strokes as small rings, or as an X with short ink besides, by the piece that proposed
-            them: where one of them is a mark, there is no letter.
+        marks: readings of its strokes as small rings, or as an X with short ink besides: where one of them is a mark,
+            there is no letter.
     """
 
     proposed: Proposed
-    marks: tuple[tuple[int, int], ...]
+    marks: tuple[Fitted, ...]
 
-    def is_none(self, known: Mapping[int, tuple[list[float], Sequence[float]]]) -> bool:
+    def is_none(self, proposed: Proposed, told: Sequence[float]) -> bool:
         """Whether one of its marks is likelier one than by its ink.
 
-        known: of each piece what its readings gain by themselves, and given what stands around.
+        proposed: what its ink may be else, and told: what that gains, given what stands around.
         """
-        return any(known[i][1][k] > known[i][0][k] for i, k in self.marks)
+        which = map(proposed.candidates.index, self.marks)
+        return any(told[k] > proposed.gains[k] for k in which)
 
 
 class Letters:
@@ -61,7 +62,7 @@ class Letters:
 
     def __init__(self) -> None:
         self._drawn = 0.0
-        self._alone: dict[Proposed, tuple[int, int, list[tuple[int, ...]]]] = {}
+        self._alone: dict[Proposed, tuple[bool, int, list[tuple[int, ...]]]] = {}
         self._known: dict[tuple[Proposed, ...], Letter | None] = {}
 
     def possible(self, page: Page, proposed: Sequence[Proposed]) -> list[Letter]:
@@ -70,21 +71,20 @@ class Letters:
         proposed: what the pieces mean else, in the order of drawing.
         """
         if page.drawn != self._drawn:
-            self._drawn, self._known = page.drawn, {}
+            self._drawn, self._alone, self._known = page.drawn, {}, {}
         largest = LARGEST * page.drawn
         of = {i: p for (i, q), p in zip(page.pieces.items(), proposed, strict=False) if q.extent < largest}
         alone, self._alone = self._alone, {}
         groups, outlines = [], []
         for i, p in of.items():
             there = alone.get(p)
-            self._alone[p] = best, ring, around = _alone(p, i) if there is None else there
-            if ring >= 0 and page.pieces[i].extent < NAIL * page.drawn:
-                plain = best == ring
-            else:
-                plain = best >= 0 and _is_straight(p.candidates[best])
-            if not plain:
+            if there is None:
+                there = _alone(p, i, page.pieces[i].extent < NAIL * page.drawn)
+            self._alone[p] = is_plain, _, around = there
+            if not is_plain:
                 groups.append((i,))
-            outlines += [group for group in around if of.keys() >= set(group)]
+            if around:
+                outlines += [group for group in around if of.keys() >= set(group)]
         known, self._known = self._known, {}
         out = []
         touching = _touching(page, {i: page.pieces[i].extent for i in of})
@@ -112,13 +112,17 @@ class Letters:
             if small[i] < NAIL * page.drawn and (len(group) == 1 or extent > HOLDS * small[i])
         ]
         whole_rings = _rings(of, group) if len(group) > 1 and extent < NAIL * page.drawn else []
-        marks = [*((i, ring) for i, ring in rings if ring >= 0), *whole_rings, *crosses]
+        marks = [of[i].candidates[k] for i, k in (*rings, *whole_rings, *crosses) if k >= 0]
         return Letter(proposing([Fitted("letter", group, 0.0, NOWHERE)], [gain]), tuple(marks))
 
 
-def _alone(proposed: Proposed, index: int) -> tuple[int, int, list[tuple[int, ...]]]:
-    """Which of what a piece proposed for its own ink gains the most, and which is a ring, -1 for none; and which few
-    pieces go around as neither a ring nor a plain body, as those of a "D" do whose stem its bow does not touch."""
+def _alone(proposed: Proposed, index: int, may_pin: bool) -> tuple[bool, int, list[tuple[int, ...]]]:
+    """Whether a piece is no letter by itself, as it is straight, or a ring; which of what it proposed is that ring, -1
+    for none; and which few pieces go around as neither a ring nor a plain body, as those of a "D" do whose stem its bow
+    does not touch.
+
+    may_pin: whether it is as small as a ring that is a pin.
+    """
     best, ring = -1, -1
     gains = proposed.gains
     around: dict[tuple[int, ...], tuple[float, bool]] = {}
@@ -131,7 +135,9 @@ def _alone(proposed: Proposed, index: int) -> tuple[int, int, list[tuple[int, ..
                 ring = k
             if best < 0 or gains[k] > gains[best]:
                 best = k
-    return best, ring, [pieces for pieces, (_, is_odd) in around.items() if is_odd]
+    is_pin = ring >= 0 and may_pin
+    is_plain = best == ring if is_pin else best >= 0 and _is_straight(proposed.candidates[best])
+    return is_plain, ring, [pieces for pieces, (_, is_odd) in around.items() if is_odd]
 
 
 def _crosses(

@@ -89,6 +89,11 @@ class Proposed:
         return frozenset(i for c in self.candidates for i in c.pieces)
 
     @lazy
+    def ink(self) -> list[int]:
+        """These, and those that lend sides to them."""
+        return sorted(self.pieces.union(c.lender for c in self.candidates if c.lender >= 0))
+
+    @lazy
     def rows(self) -> list[Row]:
         """Of the outline of each candidate its least x and y, greatest x and y, and extent [pixels]."""
         return _rows(self.candidates)
@@ -189,17 +194,17 @@ class Proposals:
         changed = self.page.settle()
         again = {i for i in changed if i in self._alone}
         thin = THINNEST * max(before, self.page.size) if before != self.page.size else 0.0
-        again |= {i for i, a in self._alone.items() if _thin(a.outlines, thin)}
+        if thin:
+            again |= {i for i, a in self._alone.items() if _thin(a.outlines, thin)}
         for i in again:
             self._forget(i)
             self.by_piece.pop(i, None)
-        if again or thin:
-            for i, p in self.by_piece.items():
-                for key in [
-                    k for k, found in p.fits.items() if not again.isdisjoint(k[0]) or _thin(found, thin)
-                ]:
-                    del p.fits[key]
-                    self._stale.add(i)
+        # whoever has fits of their ink looked there
+        for i in list(self.by_piece) if thin else self._stale.intersection(self.by_piece) if again else ():
+            fits = self.by_piece[i].fits
+            for key in [k for k, found in fits.items() if not again.isdisjoint(k[0]) or _thin(found, thin)]:
+                del fits[key]
+                self._stale.add(i)
         for i in sorted(again.union(new)):
             self.free[i] = self.page.pieces[i].unread
             self._alone[i] = self._read_alone(self.page.pieces[i])

@@ -68,6 +68,57 @@ def test_any_way_to_a_page_gives_the_same_scene(
         assert (a.kind, a.strokes, a.score, a.alternatives) == (b.kind, b.strokes, b.score, b.alternatives)
 
 
+def drawings(count: int, hand: str = "pieces") -> list[list[Stroke]]:
+    """The strokes of so many machines side by side."""
+    out = []
+    for k in range(count):
+        machine = (cart, pendulum, stack)[k % 3](HANDS[hand], np.random.default_rng([k, 5]))
+        place = np.array([1400.0 * (k % 4), 800.0 * (k // 4)])
+        out.append([Stroke(s.points + place) for s in machine.strokes])
+    return out
+
+
+@settings(max_examples=10, deadline=None, derandomize=True)
+@given(data=st.data())
+def test_strokes_come_and_go_on_a_page_of_several_drawings(data: st.DataObject) -> None:
+    strokes = [s for machine in drawings(5, data.draw(st.sampled_from(["pieces", "quick"]))) for s in machine]
+    page = Recognizer(Sketch(strokes, 5600.0, 1700.0))
+    page.recognition()
+    drawn = dict(enumerate(strokes))
+    for _ in range(data.draw(st.integers(2, 12))):
+        if data.draw(st.booleans()):
+            key = data.draw(st.sampled_from(sorted(drawn)))
+            page.remove(key)
+            del drawn[key]
+        else:
+            again = data.draw(st.sampled_from(strokes)).points + data.draw(
+                st.sampled_from([4.0, 60.0, 900.0])
+            )
+            drawn[page.add(Stroke(again))] = Stroke(again)
+        if data.draw(st.booleans()):
+            page.recognition()
+    at_once = recognize(Sketch(list(drawn.values()), 5600.0, 1700.0))
+    one_by_one = page.recognition()
+    assert one_by_one.scene.to_dict() == at_once.scene.to_dict()
+    assert one_by_one.explain() == at_once.explain()
+
+
+def test_a_stroke_is_the_same_work_on_a_page_of_any_size() -> None:
+    """What is reckoned anew for a stroke more lies around it: on a page of twelve machines it is as much as of four."""
+    work = {}
+    corners = {0, 3, 8, 11}
+    machines = drawings(12)
+    for few in (True, False):
+        strokes = [s for k, its in enumerate(machines) for s in its if not few or k in corners]
+        page = Recognizer(Sketch(strokes, 5600.0, 2600.0))
+        page.recognition()
+        before = page.made
+        page.add(Stroke(machines[11][0].points + 30.0))
+        page.recognition()
+        work[few] = page.made - before
+    assert 0 < work[False] <= work[True]
+
+
 def test_overrides_count_the_strokes_that_are_there() -> None:
     sketch = pendulum(HANDS["neat"], np.random.default_rng(1))
     page = Recognizer(sketch)

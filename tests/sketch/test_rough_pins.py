@@ -9,7 +9,7 @@ import pytest
 from pages import box, read
 
 from sim import simulate
-from sketch.synthetic import Hand, arrow, circle, cross, line, outline
+from sketch.synthetic import HANDS, Hand, arrow, circle, cross, line, outline
 
 Point = tuple[float, float]
 HAND = Hand(tremor=0.002, drift=0.008, rounding=0.02, overshoot=0.02, spacing=0.03, unsteady=0.7)
@@ -129,3 +129,16 @@ def test_a_rod_that_ends_short_of_its_pin_is_none_that_the_wheel_turns_on(x: int
         ("b1", "b3"),
         ("b2", "b3"),
     ]
+
+
+def test_a_note_of_a_ring_that_may_be_a_ball_names_the_body_as_the_scene_does() -> None:
+    rng, hand = np.random.default_rng(1), HANDS["neat"]
+    pinned = [
+        outline(box(250, 300, 300, 200), hand, rng),
+        outline(box(300, 420, 60, 320), hand, rng),
+        circle((300, 320), 9, hand, rng),  # a pivot, and no body: the third is the box after it
+    ]
+    alone = [outline(box(850, 300, 200, 200), hand, rng), circle((850, 300), 20, hand, rng)]
+    scene = read(*pinned, *alone).scene
+    (note,) = (text for text in scene.notes if "small circle" in text)
+    assert f" {scene.bodies[2].id} " in note

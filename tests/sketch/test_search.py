@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.optimize import Bounds, LinearConstraint, milp
 
-from sketch.search import Packing, part
+from sketch.kept import Kept
+from sketch.search import best, part
 
 
 def best_packing(groups: Sequence[tuple[int, ...]], gains: Sequence[float]) -> list[int]:
@@ -19,7 +20,7 @@ def best_packing(groups: Sequence[tuple[int, ...]], gains: Sequence[float]) -> l
         by_first.setdefault(group[0], []).append(g)
     numbers = list(by_first.values())
     parts = [part([groups[g] for g in own], [gains[g] for g in own]) for own in numbers]
-    return [numbers[p][k] for p, k in Packing().best(parts)]
+    return [numbers[p][k] for p, k in best(Kept(), *parts)]
 
 
 def brute(groups: list[tuple[int, ...]], gains: list[float]) -> float:
@@ -97,14 +98,16 @@ def test_a_tangle_of_groups_that_all_gain_alike_is_packed_exactly(seed: int) -> 
 
 def test_what_changed_is_packed_anew_and_the_rest_kept() -> None:
     rng = np.random.default_rng(3)
-    page = Packing()
+    kept = Kept()
     groups = [tuple(sorted({int(a), int(a + b)})) for a, b in rng.integers(0, 12, (60, 2))]
     for _ in range(20):
         gains = rng.uniform(-10, 50, len(groups)).tolist()
         by_lead = [[k for k, g in enumerate(groups) if g[0] == lead] for lead in range(24)]
         parts = [part([groups[k] for k in own], [gains[k] for k in own]) for own in by_lead]
-        chosen = [by_lead[p][k] for p, k in page.best(parts)]
+        chosen = [by_lead[p][k] for p, k in best(kept, *parts)]
         live = [k for k, gain in enumerate(gains) if gain > 0]
         afresh = best_packing([groups[k] for k in live], [gains[k] for k in live])
         assert sorted(chosen) == sorted(live[k] for k in afresh)
-        assert page.best(parts) == page.best(parts)
+        made = kept.made
+        assert best(kept, *parts) == best(kept, *parts)
+        assert kept.made == made

@@ -15,7 +15,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sketch.search import Packing, part
+from sketch.kept import Kept
+from sketch.search import best, part
 
 __all__ = ["Together"]
 
@@ -55,14 +56,15 @@ class Together:
         first_of: dict[int, list[int]] = {}
         for k, ink in enumerate(self._inks):
             first_of.setdefault(ink[0], []).append(k)
-        self._leading, self._packing = list(first_of.values()), Packing()
+        self._leading, self._kept = list(first_of.values()), Kept()
 
     def best(self, gains: list[float]) -> tuple[list[int], float]:
         """The set that gains the most, given the gains of the readings by themselves; and what is saved by what it
         leaves over, less what is lost where its readings say the same ink."""
         worth = gains + self._saved
         parts = [part([self._inks[k] for k in some], [worth[k] for k in some]) for some in self._leading]
-        packed = [self._leading[p][k] for p, k in self._packing.best(parts)]
+        self._kept.forget()
+        packed = [self._leading[p][k] for p, k in best(self._kept, *parts)]
         every = np.array(worth, np.float32)
         some = np.flatnonzero(every > 0)
         at = {k: n for n, k in enumerate(some.tolist())}
