@@ -349,7 +349,11 @@ def _read_chain(page: Page, chain: Chain) -> list[Fitted]:
     for f in found:
         if f.cost < free:
             off = off_outline(page.strokes, strokes, f.outline)
-            said = (min(misfit_of(p, square), p.unread) for p, square in zip(little, off, strict=True))
+            # along its own ink an outline of any course says nothing of what is little beside it
+            said = (
+                p.unread if f.kind == "free" else min(misfit_of(p, square), p.unread)
+                for p, square in zip(little, off, strict=True)
+            )
             f = replace(f, cost=f.cost + sum(said))
         out.append(f)
     return out
