@@ -101,6 +101,9 @@ class Letters:
         extent, small = _extent(page, group), {i: page.pieces[i].extent for i in group}
         if extent >= LARGEST * page.drawn:
             return None
+        ring, is_plain = _as_ring(of, group) if len(group) > 1 and extent < NAIL * page.drawn else ([], False)
+        if is_plain:
+            return None
         crosses, whole = _crosses(of, group, small) if len(group) > 1 else ([], [])
         gain = _gain(page, group, extent / (USUAL * page.drawn))
         gain = max([gain, *(min(gain + rough, its + SURER) for its, rough in whole)])
@@ -111,8 +114,7 @@ class Letters:
             for i in group
             if small[i] < NAIL * page.drawn and (len(group) == 1 or extent > HOLDS * small[i])
         ]
-        whole_rings = _rings(of, group) if len(group) > 1 and extent < NAIL * page.drawn else []
-        marks = [of[i].candidates[k] for i, k in (*rings, *whole_rings, *crosses) if k >= 0]
+        marks = [of[i].candidates[k] for i, k in (*rings, *ring, *crosses) if k >= 0]
         return Letter(proposing([Fitted("letter", group, 0.0, NOWHERE)], [gain]), tuple(marks))
 
 
@@ -160,14 +162,16 @@ def _crosses(
     return found, whole
 
 
-def _rings(of: Mapping[int, Proposed], group: tuple[int, ...]) -> list[tuple[int, int]]:
-    """Readings of all pieces of a group together as a ring: which piece proposed it, and which it is."""
-    return [
-        (i, k)
+def _as_ring(of: Mapping[int, Proposed], group: tuple[int, ...]) -> tuple[list[tuple[int, int]], bool]:
+    """Readings of all pieces of a group together as one ring: which piece proposed it, and which it is; and whether
+    nothing says them as well."""
+    its = [
+        (gain, c.kind == "circle", i, k)
         for i in group
         for k, (c, gain) in enumerate(zip(of[i].candidates, of[i].gains, strict=True))
-        if gain > 0 and c.kind == "circle" and c.pieces == group
+        if gain > 0 and c.pieces == group
     ]
+    return [(i, k) for _, is_ring, i, k in its if is_ring], bool(its) and max(its)[1]
 
 
 def _is_straight(c: Fitted) -> bool:
