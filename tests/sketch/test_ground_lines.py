@@ -94,3 +94,17 @@ def test_a_ring_drawn_over_twice_at_the_end_of_a_rope_is_a_pin(seed: int) -> Non
     scene = read(beam, rope, ring, again, ball, pin, fall(rng)).scene
     assert len(scene.bodies) == 3
     assert sorted(joint.bodies for joint in scene.joints) == [("b1", "b2"), ("b2", "b3")]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_rope_that_a_ring_holds_is_no_slip_where_it_ends_at_a_wheel(seed: int) -> None:
+    """From a block on a wedge, up along it, to a wheel at the top."""
+    rng = np.random.default_rng(seed)
+    wedge = outline([(200, 640), (900, 640), (900, 340)], HAND, rng) + cross((700, 580), 40, HAND, rng)
+    wheel = circle((890, 330), 40, HANDS["neat"], rng)
+    block = outline(box(600, 432, 110, 70, -0.405), HAND, rng)
+    rope = line([(640, 424), (846, 340)], HAND, rng)
+    ring = circle((641, 423), 7, HANDS["neat"], rng)
+    scene = read(wedge, wheel, block, rope, ring, fall(rng)).scene
+    assert len(scene.bodies) == 4
+    assert [joint.bodies for joint in scene.joints] == [("b3", "b4")]
