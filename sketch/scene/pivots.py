@@ -217,9 +217,12 @@ def _missed(first: Drawn, near: list[tuple[float, Drawn]], ring: Drawn, fixed: S
     """What a ring over one body misses by more than a slip of the hand, where it says nothing else.
 
     A pin from an anchored body to the page means nothing, and one to an anchored body holds as one to the page does;
-    and no rod ends beside a ring by chance.
+    what turns about the page does so about its middle, if it is a wheel; and no rod ends beside a ring by chance.
     """
-    found = [d for depth, d in near if depth < NEAR * ring.radius and (d in fixed) != (first in fixed)]
+    aside = first.kind == "circle" and math.dist(ring.middle, first.middle) > JOINS * first.radius
+    found = [
+        d for depth, d in near if depth < NEAR * ring.radius and (aside or (d in fixed) != (first in fixed))
+    ]
     return found or [d for _, d in near if d.kind == "bar" and _ends_near(d, ring)]
 
 

@@ -142,3 +142,18 @@ def test_a_note_of_a_ring_that_may_be_a_ball_names_the_body_as_the_scene_does() 
     scene = read(*pinned, *alone).scene
     (note,) = (text for text in scene.notes if "small circle" in text)
     assert f" {scene.bodies[2].id} " in note
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_ring_aside_of_a_wheel_s_middle_joins_it_to_what_it_all_but_reaches(seed: int) -> None:
+    """A cart whose wheels hang below its frame, by pins near their rims; a wheel nailed to the page has its nail in the
+    middle."""
+    rng = np.random.default_rng(seed)
+    neat = HANDS["neat"]
+    frame = outline(box(640, 400, 400, 90), HAND, rng)
+    wheels = [circle((x, 507), 52, HAND, rng) for x in (520, 760)]
+    free = circle((200, 300), 60, HAND, rng)
+    rings = [stroke for at in ((520, 462), (760, 462), (200, 300)) for stroke in circle(at, 8, neat, rng)]
+    scene = read(frame, *wheels, free, rings).scene
+    assert len(scene.bodies) == 4
+    assert [joint.bodies for joint in scene.joints] == [("b1", "b2"), ("b1", "b3"), ("b4", None)]
