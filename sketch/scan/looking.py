@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.scan.binding import Chains, distances, thin, trace
-from sketch.scan.paper.broken import is_broken
+from sketch.scan.paper.broken import is_broken, join_skips
 from sketch.scan.paper.faint import drop_faint_marks
 from sketch.scan.paper.fills import FILL, fill_grain, fill_hatching, hollow_fills
 from sketch.scan.paper.grain import smoothed_grain
@@ -82,6 +82,10 @@ class Seen:
             self.left_out.append(f"left out {faint} marks that are far fainter than the pen's")
             distance = distances(mask)
             drop_specks(mask, distance, pen)
+            skeleton, size = thin(mask)
+            chains = trace(skeleton, size)
+        if join_skips(mask, chains, pen):
+            distance = distances(mask)
             skeleton, size = thin(mask)
             chains = trace(skeleton, size)
         self.skeleton, self.distance = skeleton, distance

@@ -44,11 +44,15 @@ class Paper:
         scale: pixels of the picture for one of the drawing.
         pen, color, cover: the pen's width, its colour, and how much of the paper it hides, 0 to 1.
         grain: how much of a pencil's graphite the paper's grain leaves out, 0 to 1.
+        skips: how much of a stroke a ballpoint that runs dry leaves out, 0 to 1.
+        second: colour of the pen that every other stroke is drawn with, or None.
+        hatched: distance of the lines that free bodies are hatched with, or 0.
         filled: whether bodies are filled in.  tint: how much of the paper the fill hides, as a share of the ink.
         sheet: colour of the paper.  texture: its unevenness [grey levels].
         ruled, squared: distance of printed lines, or 0; ruling: their colour; ruling_width [pixels of the picture].
         behind: how dark the other side of the sheet shows through, 0 to 1.
-        folds, coffee, specks: how many.
+        folds, coffee, specks, smudges: how many; a smudge is what an eraser leaves of a line.
+        punched: how many holes are along the left edge.
         shade: light at the darkest corner, as a share of the brightest.
         shadow: light within a shadow with an edge, likewise; shadow_edge: how soft that is [pixels of the picture].
         lamp: colour of the light.  glare: [grey levels] of a lamp's reflection.
@@ -62,6 +66,9 @@ class Paper:
     color: Color = (60, 45, 40)
     cover: float = 0.92
     grain: float = 0.0
+    skips: float = 0.0
+    second: Color | None = None
+    hatched: float = 0.0
     filled: bool = False
     tint: float = 1.0
     sheet: Color = (238, 240, 241)
@@ -74,6 +81,8 @@ class Paper:
     folds: int = 0
     coffee: int = 0
     specks: int = 0
+    smudges: int = 0
+    punched: int = 0
     shade: float = 1.0
     shadow: float = 1.0
     shadow_edge: float = 3.0
@@ -89,6 +98,8 @@ class Paper:
 
     def shows(self, drawing: Drawing) -> bool:
         """Whether all of a drawing is seen on it: a fill as dark as the ink hides marks."""
+        if self.hatched and not _free(drawing):
+            return False
         hides = self.filled and self.tint == 1.0
         return not hides or not (drawing.joints or any(body.anchored for body in drawing.bodies))
 
@@ -147,6 +158,13 @@ PAPERS: dict[str, Paper] = {
         fingers=2,
         noise=4,
     ),
+    "ballpoint that skips": replace(BALLPOINT, skips=0.06),
+    "two pens": replace(PHOTO, second=(40, 40, 200)),
+    "pencil and pen": replace(PENCIL, second=(110, 50, 30)),
+    "hatched": replace(PHOTO, hatched=9.0),
+    "punched": replace(PHOTO, punched=4),
+    "smudges": replace(PENCIL, smudges=4),
+    "wide marker": replace(PHOTO, pen=10.0, color=(60, 120, 40), scale=0.8),
 }
 
 
@@ -231,7 +249,12 @@ def _carried(drawing: Drawing, view: Array, size: tuple[int, int]) -> Drawing:
 
 def _sheet(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
     """The sheet seen straight from above in even light, BGR, float."""
-    ink = _ink(drawing, paper, rng)
+    ink, second = _ink(drawing, paper, rng), None
+    if paper.second is not None:
+        ink = _ink(replace(drawing, strokes=drawing.strokes[::2]), paper, rng)
+        second = _ink(
+            replace(drawing, strokes=drawing.strokes[1::2]), replace(paper, pen=1.2 * paper.pen), rng
+        )
     shape = ink.shape
     sheet = np.broadcast_to(np.array(paper.sheet, np.float32), (*shape, 3)).copy()
     sheet += paper.texture * _grain(shape, 1.5, rng)[..., None]
@@ -240,6 +263,8 @@ def _sheet(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
         sheet *= 1 - paper.behind * cv2.GaussianBlur(ink[:, ::-1], (0, 0), 2.0)[..., None]
     for _ in range(paper.coffee):
         _stain(sheet, rng)
+    for _ in range(paper.smudges):
+        _smudge(sheet, paper, rng)
     for _ in range(paper.folds):
         _fold(sheet, rng)
     for _ in range(paper.specks):
@@ -247,8 +272,16 @@ def _sheet(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
         cv2.circle(sheet, at, round(rng.uniform(1, 2.5)), (70, 70, 70), cv2.FILLED, cv2.LINE_AA)
     if paper.grain:
         ink = ink * np.clip(1 - paper.grain * (0.5 + _grain(shape, 0.8, rng)), 0, 1)
+    sheet = _under(sheet, ink, paper.color, paper)
+    if second is not None and paper.second is not None:
+        sheet = _under(sheet, second, paper.second, paper)
+    _punch(sheet, paper.punched)
+    return sheet
+
+
+def _under(sheet: Array, ink: Array, color: Color, paper: Paper) -> Array:
     cover = paper.cover * ink[..., None]
-    return np.asarray(sheet * (1 - cover) + np.array(paper.color, np.float32) * cover)
+    return np.asarray(sheet * (1 - cover) + np.array(color, np.float32) * cover)
 
 
 def _ink(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
@@ -265,7 +298,11 @@ def _ink(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
         for k in range(pieces):
             piece = stroke[k * len(stroke) // pieces : (k + 1) * len(stroke) // pieces + 1]
             wide = max(1, round(paper.pen * up * rng.uniform(0.88, 1.12)))
-            cv2.polylines(image, [fixed(piece)], False, 255, wide, cv2.LINE_AA, 4)
+            for part in _written(piece, paper, rng):
+                cv2.polylines(image, [fixed(part)], False, 255, wide, cv2.LINE_AA, 4)
+    for line in _hatching(drawing, paper, rng) if paper.hatched else ():
+        wide = max(1, round(paper.pen * up * rng.uniform(0.7, 1.0)))
+        cv2.polylines(image, [fixed(line)], False, 255, wide, cv2.LINE_AA, 4)
     if paper.filled:
         fill = np.zeros_like(image)
         for body in drawing.bodies:
@@ -273,6 +310,75 @@ def _ink(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
                 cv2.fillPoly(fill, [fixed(body.outline)], round(255 * paper.tint), cv2.LINE_AA, 4)
         image = np.maximum(image, fill)
     return cv2.resize(image, size[::-1], interpolation=cv2.INTER_AREA).astype(np.float32) / 255
+
+
+def _written(stroke: Array, paper: Paper, rng: np.random.Generator) -> list[Array]:
+    """The parts of a stroke that a pen leaves ink of: one that runs dry skips for about a pen's width or two."""
+    if not paper.skips:
+        return [stroke]
+    along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(stroke, axis=0).T))])
+    parts, at = [], 0.0
+    while at < along[-1]:
+        skip = paper.pen * rng.exponential(1.5)
+        end = at + rng.exponential(skip / paper.skips) + paper.pen
+        places = np.concatenate([[at], along[(along > at) & (along < end)], [min(end, along[-1])]])
+        parts.append(np.stack([np.interp(places, along, axis) for axis in stroke.T], axis=1))
+        at = end + skip
+    return parts
+
+
+def _free(drawing: Drawing) -> list[Array]:
+    """The outlines of bodies that have no mark on them, so that hatching hides none."""
+    jointed = {k for joint in drawing.joints for k in joint.bodies}
+    bodies = enumerate(drawing.bodies)
+    return [b.outline for k, b in bodies if not b.anchored and k not in jointed and b.kind != "bar"]
+
+
+def _hatching(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> list[Array]:
+    """Lines at a slant from side to side of the free bodies, each drawn a little short or long."""
+    lines = []
+    for outline in _free(drawing):
+        a = rng.uniform(0.6, 1.0)
+        along, across = np.array([math.cos(a), -math.sin(a)]), np.array([math.sin(a), math.cos(a)])
+        u, v = outline @ along, outline @ across
+        for at in np.arange(v.min() + 0.6 * paper.hatched, v.max(), paper.hatched):
+            level = v - (at + rng.normal(0, 0.06) * paper.hatched)
+            far = np.roll(level, -1)
+            cut = np.flatnonzero(level * far < 0)
+            if len(cut) != 2:
+                continue
+            share = level[cut] / (level[cut] - far[cut])
+            ends = np.sort(u[cut] + share * (np.roll(u, -1)[cut] - u[cut])) + rng.normal(0, 1.5, 2)
+            lines.append(np.array([end * along + at * across for end in ends]))
+    return lines
+
+
+def _smudge(sheet: Array, paper: Paper, rng: np.random.Generator) -> None:
+    """What an eraser leaves of a line: its ghost, and graphite that it spread beside it."""
+    height, width = sheet.shape[:2]
+    at = np.array([width, height]) * rng.uniform(0.2, 0.8, 2)
+    a, long = rng.uniform(0, math.pi), 0.08 * width
+    ends = [
+        at - long * np.array([math.cos(a), math.sin(a)]),
+        at + long * np.array([math.cos(a), math.sin(a)]),
+    ]
+    ghost, spread = np.zeros((height, width), np.float32), np.zeros((height, width), np.float32)
+    first, last = (np.round(end).astype(int).tolist() for end in ends)
+    cv2.line(ghost, first, last, 1.0, max(1, round(paper.pen * paper.scale)), cv2.LINE_AA)
+    for off in rng.normal(0, 0.012 * width, (6, 2)):
+        from_, to = (np.round(end + off).astype(int).tolist() for end in ends)
+        cv2.line(spread, from_, to, float(rng.uniform(0.3, 1)), round(0.012 * width))
+    spread = cv2.GaussianBlur(spread, (0, 0), 0.006 * width)
+    sheet *= 1 - (0.14 * cv2.GaussianBlur(ghost, (0, 0), 1.2) + 0.08 * spread)[..., None]
+
+
+def _punch(sheet: Array, holes: int) -> None:
+    """Holes along the left edge that show what is under the sheet."""
+    height, width = sheet.shape[:2]
+    for k in range(holes):
+        y = height * (0.5 + 0.22 * (k - 0.5 * (holes - 1)))
+        at = round(0.022 * width), round(y)
+        cv2.circle(sheet, at, round(0.01 * width), (50, 60, 70), cv2.FILLED, cv2.LINE_AA)
 
 
 def _rule(sheet: Array, paper: Paper, rng: np.random.Generator) -> None:

@@ -14,13 +14,14 @@ from tests.sketch.scan.paper import PAPERS, photographed
 
 PENDULUM, CART = 0, 1
 APART = 32  # shapes that do not touch, which may be filled
+FUNNEL = 24  # without a pivot, and with shapes that nothing holds
 
 
 def drawing(name: str) -> tuple[int, Drawing]:
     # a marker nearly as wide as a pivot hides what the pivot joins
     wide = name in ("marker", "whiteboard with glare")
     turn = PENDULUM if wide or list(PAPERS).index(name) % 2 else CART
-    number = APART if name == "filled" else turn
+    number = {"filled": APART, "hatched": FUNNEL, "wide marker": FUNNEL}.get(name, turn)
     return number, draw(number, 7, 20)
 
 
@@ -35,6 +36,14 @@ def test_a_page_of_filled_shapes_alone_is_read() -> None:
     """Nothing on it is as thin as a pen."""
     drawn = draw(104, 7, 20)
     data, seen = photographed(drawn, PAPERS["filled"], np.random.default_rng([104, 1]))
+    assert differences(seen, recognize(load_sketch(data)).scene) == []
+
+
+@pytest.mark.parametrize("number", [1, 5, 10])
+def test_what_a_ballpoint_skips_is_drawn(number: int) -> None:
+    """Else a line is four or five, and a box in as many strokes is none."""
+    rng = np.random.default_rng([7440, number, 496188278])
+    data, seen = photographed(draw(number, 7444, 20), PAPERS["ballpoint that skips"], rng)
     assert differences(seen, recognize(load_sketch(data)).scene) == []
 
 
