@@ -1,6 +1,7 @@
 """Holes that were punched into a sheet for a binder: alike and round, along an edge of it, with nothing beyond.
 
 One that the picture's edge cuts need be neither round nor one of two: nobody fills half a shape, dark to that edge.
+It may be the other one of two.
 """
 
 from __future__ import annotations
@@ -26,15 +27,16 @@ def punched(mask: Image, edge: Image | None, margin: int, pixels: list[NDArray[n
     pixels: of each piece, as indices into the mask.
     """
     rim = RIM * (mask.shape[0] * mask.shape[1]) ** 0.5
-    discs, cut = [], set[int]()
+    discs, cut = [], dict[int, tuple[int, set[int]]]()  # of what an edge cuts: how wide it is, at which sides
     height, width = mask.shape
     within = max(margin, 1)
     for k, piece in enumerate(pixels):
         y, x = np.divmod(piece, mask.shape[1])
         (left, right), (top, bottom) = ((int(v.min()), int(v.max())) for v in (x, y))
         wide, high = right - left + 1, bottom - top + 1
-        if min(left, top, width - 1 - right, height - 1 - bottom) <= within and max(wide, high) < 2 * rim:
-            cut.add(k)
+        margins = (left, width - 1 - right, top, height - 1 - bottom)
+        if min(margins) <= within and max(wide, high) < 2 * rim:
+            cut[k] = max(wide, high), {side for side, free in enumerate(margins) if free <= within}
             continue
         full = np.pi / 4 * wide * high
         if abs(wide - high) > ROUND * wide or abs(len(piece) - full) > ROUND * full:
@@ -54,7 +56,13 @@ def punched(mask: Image, edge: Image | None, margin: int, pixels: list[NDArray[n
             if free < rim and not beyond[:free].any():
                 discs.append((side, k, wide, free, y0 if side < 2 else x0))
     return sorted(
-        cut
+        cut.keys()
+        | {
+            k
+            for side, k, wide, _, _ in discs
+            for width, sides in cut.values()
+            if side in sides and abs(width - wide) < ALIKE * wide
+        }
         | {
             k
             for side, k, wide, free, at in discs
