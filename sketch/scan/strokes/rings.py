@@ -196,7 +196,8 @@ class _Places:
 
     def touched(self, middle: Points, reach: float, inside: NDArray[np.bool_]) -> list[int]:
         """Likewise, and those that end at one of some nodes."""
-        ending = np.append(inside, False)[self._ends].any(axis=1)  # what is closed ends at -1
+        # what ends nowhere ends at -1, and what is closed at -2
+        ending = np.append(inside, [False, False])[self._ends].any(axis=1)
         found: list[int] = np.flatnonzero(self._comes_near(middle, reach) | ending).tolist()
         return found
 
