@@ -33,7 +33,7 @@ class Part:
     """Groups that are all in one cluster, as one piece leads them: of each ink the best, with its gain (> 0). Never
     changed once it is made.
 
-    Parts with the same groups and gains are equal.
+    Parts with the same groups and gains, of the same places, are equal.
 
     Attributes:
         groups, gains: one for each ink.  index: which of those that it was made of.
@@ -51,7 +51,9 @@ class Part:
         return self.known_by
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Part) and (self.groups, self.gains) == (other.groups, other.gains)
+        if not isinstance(other, Part):
+            return False
+        return (self.groups, self.gains, self.index) == (other.groups, other.gains, other.index)
 
 
 def part(groups: Sequence[Group], gains: Sequence[float]) -> Part:

@@ -96,6 +96,14 @@ def test_a_tangle_of_groups_that_all_gain_alike_is_packed_exactly(seed: int) -> 
     assert sum(gains[g] for g in chosen) == pytest.approx(-solved.fun)
 
 
+def test_parts_that_gain_the_same_in_other_places_are_not_one() -> None:
+    """What was found of one is given by its places: of another, they would be the wrong ones, or none."""
+    kept = Kept()
+    early, late = part([(0,), (0, 1)], [5.0, -1.0]), part([(0, 1), (0,)], [-1.0, 5.0])
+    assert best(kept, early) == [(0, 0)]
+    assert best(kept, late) == [(0, 1)]
+
+
 def test_what_changed_is_packed_anew_and_the_rest_kept() -> None:
     rng = np.random.default_rng(3)
     kept = Kept()
