@@ -70,7 +70,7 @@ class Seen:
         self.specks = drop_specks(mask, distance, pen)
         if fill_hatching(mask, pen):
             distance = distances(mask)
-        if hollowed := hollow_fills(mask, distance, pen):
+        if hollowed := hollow_fills(mask, skeleton, distance, pen):
             distance = distances(mask)
         if fill_grain(mask, distance, pen) or hollowed:
             skeleton, size = thin(mask)

@@ -24,7 +24,7 @@ from sketch.scan.strokes.hidden import going_on
 from sketch.scan.strokes.overlaps import overlapping
 from sketch.scan.strokes.prices import lines
 from sketch.scan.strokes.remains import remaining
-from sketch.scan.strokes.rings import find_rings, take_rings
+from sketch.scan.strokes.rings import find_rings, is_part, take_rings
 from sketch.scan.strokes.settle import settle
 from sketch.scan.strokes.subdivision import Subdivision, bridged
 from sketch.scan.strokes.tails import with_tails
@@ -82,7 +82,8 @@ def _strokes(chains: Chains, seen: Seen) -> list[Stroke]:
         return _drawn_as(likeliest)
     stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
     others = [_drawn(way, seen) for way in with_all_ink(ways.others(), stretches)]
-    others += [_drawn(way, seen) for way in _in_tangles(rings.tangles, likeliest + others, pen)]
+    within = _in_tangles(rings.tangles, likeliest + others, pen)
+    others += [_drawn(way, seen) for way in within if not is_part(way, rings.round, pen)]
     planes = [Subdivision(edges, rings.round, pen) for edges in (drawn.edges, bridged(drawn, pen))]
     others += [_drawn(way, seen) for way in standing(planes, stretches)]
     others += with_tails(likeliest + others, pen * seen.scale)

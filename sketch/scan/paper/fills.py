@@ -13,6 +13,8 @@ from sketch.typing import Image
 __all__ = ["FILL", "fill_grain", "fill_hatching", "holes", "hollow_fills"]
 
 FILL = 1.3  # pen widths from the paper: no line is as wide, nor two that cross
+BLOT = 2.0  # squares of the pen width inside its rim: larger ink is filled, whatever leads there
+AWAY = 1.5  # pen widths from there: the lines that lead away are told apart
 GRAIN = 1.0  # squares of the pen width: larger holes are no grain
 WITHIN = 1.0  # pen widths from the paper: nothing within one line, nor where two cross, is as far
 AROUND = (
@@ -45,10 +47,10 @@ def holes(mask: Image) -> list[tuple[NDArray[np.int32], int]]:
     ]
 
 
-def hollow_fills(mask: Image, distance: NDArray[Any], pen: float) -> bool:
+def hollow_fills(mask: Image, skeleton: Image, distance: NDArray[Any], pen: float) -> bool:
     """Leave of filled shapes, in place, the outline that a pen `pen` pixels wide would draw; whether there are any.
 
-    distance: each ink pixel's distance to the paper, shape (h, w).
+    skeleton: the ink's lines.  distance: each ink pixel's distance to the paper, shape (h, w).
     """
     import cv2
 
@@ -57,8 +59,26 @@ def hollow_fills(mask: Image, distance: NDArray[Any], pen: float) -> bool:
     core = (distance > FILL * pen).view(np.uint8)
     reach = 2 * round(FILL * pen) + 1
     fills = cv2.dilate(core, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (reach, reach)))
-    mask[(fills > 0) & (distance > pen)] = 0
-    return True
+    inside = ((fills > 0) & (distance > pen)).view(np.uint8)
+    _, labels, boxes, _ = cv2.connectedComponentsWithStats(inside, connectivity=4)
+    reach = round(AWAY * pen) + 1
+    for k, (left, top, width, height, area) in enumerate(boxes.tolist()):
+        if area < BLOT * pen * pen:
+            rows = slice(max(top - reach, 0), top + height + reach)
+            columns = slice(max(left - reach, 0), left + width + reach)
+            its = labels[rows, columns] == k
+            if 1 <= _leading_away(its, skeleton[rows, columns], reach) <= 2:
+                inside[rows, columns][its] = 0
+    mask[inside > 0] = 0
+    return bool(inside.any())
+
+
+def _leading_away(blot: NDArray[np.bool_], skeleton: Image, reach: int) -> int:
+    """How many lines lead away from a blot, `reach` [pixels] from it: at a corner, or a line's end, the pen rested."""
+    import cv2
+
+    within, beyond = (cv2.dilate(blot.view(np.uint8), _disc(2 * far)) for far in (reach - 1, reach))
+    return int(cv2.connectedComponents((beyond - within) * skeleton)[0]) - 1
 
 
 def fill_grain(mask: Image, distance: NDArray[Any], pen: float) -> bool:

@@ -20,7 +20,7 @@ from sketch.scan.skeleton.graph import Edge, Graph, Ink
 from sketch.scan.strokes.ways import Way
 from sketch.typing import Box, Points
 
-__all__ = ["find_rings", "take_rings"]
+__all__ = ["find_rings", "is_part", "take_rings"]
 
 Belt = tuple[float, Points, float, Points]  # as of `belt`
 
@@ -32,6 +32,7 @@ CHANCE = 10.0  # [rad²] for what a ring that is perfectly round is too good to 
 ALL_ROUND = 0.7  # of its length: an edge that has so much of the ring is the ring
 BLOT = 0.75  # pen widths from the paper: ink that is further from it is a hole that closed, and no line
 PEAK = SMALLEST + 0.5  # pen widths from the paper: the middle of the smallest ring whose hole closed
+PART = 0.7  # of the box around a ring: what fills less of it is a part of the ring
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
 
@@ -69,6 +70,24 @@ def _is_in(ring: Belt, outer: Belt, pen: float) -> bool:
     off = float(np.hypot(*(middle - around)))
     has_own_ink = off + radius + APART * pen < reach
     return reach > radius + pen and off < reach and (has_own_ink or roundness > its - WITHIN)
+
+
+def is_part(way: Way, rings: list[Points], pen: float) -> bool:
+    """Whether a closed way is around a part of a ring only, which a line across it cuts off.
+
+    rings: all there are, each shape (n, 2) [pixels].
+    """
+    points = way.points
+    if not np.array_equal(points[0], points[-1]):
+        return False
+    low, high = points.min(axis=0), points.max(axis=0)
+    boxes = [(ring.min(axis=0), ring.max(axis=0)) for ring in rings]
+    return any(
+        np.all(low > least - pen)
+        and np.all(high < most + pen)
+        and (high - low).prod() < PART * (most - least).prod()
+        for least, most in boxes
+    )
 
 
 def _seeds(
@@ -166,7 +185,9 @@ def take_rings(
         if not crossing:
             continue  # a better ring has it all
         only = within[crossing[0]]
-        if len(crossing) == 1 and only.mean() > 0.5 and np.count_nonzero(only) > ALL_ROUND * around:
+        # other ink may lead to a ring's only line beyond its belt
+        alone = len(crossing) == 1 and max(graph.edges[crossing[0]].ends) < 0
+        if alone and only.mean() > 0.5 and np.count_nonzero(only) > ALL_ROUND * around:
             continue  # it stands by itself
         ink = _take(graph, middle, reach, pen, stretches, places)
         hidden = round(around) - sum(map(len, ink.values()))

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import count, pairwise
 
 import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from test_tangles import Line, circle, inked, kinds, read
+from sheets import even
+from test_tangles import BOX, Line, circle, inked, kinds, read
 
 from sketch.scan.binding import thin, trace
-from sketch.scan.skeleton.graph import build_graph
-from sketch.scan.strokes.rings import find_rings
-from sketch.scan.strokes.ways import Ways
+from sketch.scan.skeleton.graph import Edge, Graph, build_graph
+from sketch.scan.strokes.rings import find_rings, is_part, take_rings
+from sketch.scan.strokes.ways import Way, Ways
 
 
 def rings(lines: list[Line], pen: float) -> list[tuple[NDArray[np.float64], float]]:
@@ -46,6 +47,39 @@ def test_half_of_a_ring_that_a_line_crosses_is_no_ring(pen: float, low: float) -
     ((middle, size),) = rings([circle(200, 200, radius), line], pen)
     assert np.hypot(*(middle - 200)) < 2
     assert abs(size - radius) < 2
+
+
+def test_what_a_line_across_a_ring_cuts_off_is_part_of_it() -> None:
+    ring = np.array(circle(200, 200, 10))
+    part = np.concatenate([ring[10:35], ring[10:11]])
+    assert is_part(Way(part, {}), [ring], 4.0)
+    assert not is_part(Way(part[:-1], {}), [ring], 4.0)
+    assert not is_part(Way(ring, {}), [ring], 4.0)
+    assert not is_part(Way(part + 40, {}), [ring], 4.0)
+
+
+def test_a_rod_that_ends_in_a_hook_within_its_ring_has_no_side_of_the_ring() -> None:
+    """What the hook cuts off of the ring would be a pivot, and the ring's other half a side of the rod."""
+    pen, middle = 2.5, (250.0, 190.0)
+    hook = [(0.7, 7.0), (0.3, 2.6), (-0.6, 0.5), (1.9, -2.2), (3.6, -3.2)]
+    rod: Line = [(middle[0] + pen * x, middle[1] + pen * y) for x, y in hook]
+    rod += [(343.7, 305.8), (325.1, 318.5), (244.9, 201.3)]
+    scene = read([BOX, circle(*middle, 2.7 * pen), rod], pen)
+    assert len(scene.joints) == 1
+    assert kinds(scene) == ["rectangle", "rectangle"]
+
+
+def test_a_ring_at_which_lines_meet_beyond_its_belt_is_taken_out_of_them() -> None:
+    middle, tip, end = np.array([[200.0, 200.0], [200.0, 216.0], [200.0, 300.0]])
+    turn = np.linspace(0.3, 2 * np.pi - 0.3, 60)
+    around = middle + 8 * np.stack([np.sin(turn), np.cos(turn)], axis=1)
+    loop = np.concatenate([even(tip, around[0]), around, even(around[-1], tip)])
+    ring = Way(np.array(circle(200, 200, 8)), {})
+    graph = Graph(tip[None], np.array([2.0]), [Edge(loop, (0, 0)), Edge(even(tip, end), (0, -1))])
+    _, taken = take_rings(graph, [ring], 4.0, count())
+    assert len(taken) == 1
+    _, alone = take_rings(Graph(tip[None][:0], np.zeros(0), [Edge(around, (-1, -1))]), [ring], 4.0, count())
+    assert not alone
 
 
 @pytest.mark.parametrize("pen", [4.0, 5.5])

@@ -11,6 +11,7 @@ import pytest
 from sheets import HEIGHT, WIDTH, drawn, encoded, even, ink
 from test_tangles import BOX, circle, inked, kinds, read
 
+from sketch.recognize import recognize
 from sketch.scan import read_picture
 from sketch.scan.binding import distances, thin, trace
 from sketch.scan.paper.faint import drop_faint_marks
@@ -38,6 +39,17 @@ def test_a_small_x_in_one_stroke_anchors_its_box(pen: float, half: float, bow: f
     scene = read([BOX, x_with_a_side(250, 250, half, bow * half)], pen)
     assert kinds(scene) == ["rectangle"]
     assert scene.bodies[0].anchored
+    assert not scene.joints
+
+
+@pytest.mark.parametrize(("pen", "hook"), [(2.5, 1.5), (3.0, 1.0)])
+def test_a_corner_where_the_pen_rested_is_no_body(pen: float, hook: float) -> None:
+    """A slow pen draws more than twice as wide: its ink is no filled shape of which the outline would be a body."""
+    (x, y), size = BOX[0], hook * pen
+    slow = inked([[(x + size, y + 0.9 * size), (x, y), (x + 0.2 * size, y + size)]], 2.6 * pen)
+    ink = np.maximum(inked([BOX], pen), slow)
+    scene = recognize(read_picture(encoded(drawn(ink, noise=1.5)))).scene
+    assert kinds(scene) == ["rectangle"]
     assert not scene.joints
 
 
