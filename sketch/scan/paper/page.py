@@ -15,6 +15,7 @@ from sketch.scan.paper.framed import within_frame
 from sketch.scan.paper.punched import punched
 from sketch.scan.paper.ruling import FEWEST, drop_ruling
 from sketch.scan.paper.table import TABLE, closed, darkest_channel, find_sheet
+from sketch.scan.paper.typed import without_print
 from sketch.scan.quantiles import median, percentile
 from sketch.typing import Image
 
@@ -300,6 +301,10 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, Page, list[str]]:
             found = _measure(mask, page)
         page = _without_print(page, bare, before & (1 - mask), ruled, margins)
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
+    dark, rows = without_print(mask, page.darkness, *found.darker(_faintest(found, full, size)), reach)
+    if rows:  # pen and paper are not to be told from it
+        note = f"left out {rows} rows of print or writing"
+        return ink_mask(replace(page, darkness=dark, left_out=(*page.left_out, note)), reach)
     frame = None if ruled or not photographed else _drop_frame(mask, found, reach)
     sheet = page
     if frame is not None:
@@ -308,7 +313,7 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, Page, list[str]]:
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     left_out = ["left out a frame all around, and what is beyond it"] if frame is not None else []
     left_out += page.left_out
-    faintest = full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT)
+    faintest = _faintest(found, full, size)
     is_solid = (found.area > SOLID * found.extent.prod(axis=1)) & (found.span > HOLE * size)
     solid = np.flatnonzero(is_solid & (found.strength >= faintest))
     if photographed and len(solid):
@@ -326,6 +331,11 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, Page, list[str]]:
         leads = (keep & found.at_edge).any() or page.beside > SMUDGE * full
         left_out += _at_edge(int(np.count_nonzero(seen & held)), bool(leads))
     return found.without(mask, ~keep), page, left_out
+
+
+def _faintest(found: _Pieces, full: float, size: float) -> NDArray[np.float64]:
+    """How dark ink is at least, piece by piece, where full ink is so dark on a picture of some size."""
+    return np.asarray(full * np.where(found.span < NOTABLE * size, SMUDGE, FAINT))
 
 
 def _without_print(page: Page, bare: Image, gone: Image, ruled: bool, margins: int) -> Page:
@@ -409,6 +419,13 @@ class _Pieces:
     @property
     def span(self) -> NDArray[np.float64]:
         return np.hypot(self.extent[:, 0], self.extent[:, 1])
+
+    def darker(
+        self, least: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
+        """The pixels of those at least so dark each, how far they go, and their areas."""
+        dark = self.strength >= least
+        return self.pixels[np.repeat(dark, self.area)], self.extent[dark], self.area[dark]
 
     def wholly(self, place: Image) -> NDArray[np.bool_]:
         """Which of them are within what is not 0 of a place, shape (h, w)."""

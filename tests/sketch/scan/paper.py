@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 
 from tests.benchmarks.drawings import Drawing
 from tests.benchmarks.mechanisms import draw
+from tests.sketch.scan.typed import Print, typed
+from tests.sketch.scan.worn import fold, grain, punch, stain
 
 __all__ = ["PAPERS", "Paper", "photographed"]
 
@@ -31,6 +33,7 @@ Color = tuple[float, float, float]  # BGR
 FINE = 2  # ink is drawn with this many pixels for one, each way, then reduced
 MARGIN = 60  # of paper around the page [pixels of the drawing]
 FOCAL = 1.3  # focal length, as a share of the picture's width
+PRINT: Color = (45, 42, 42)
 TABLE: Color = (52, 76, 104)
 SKIN: Color = (115, 145, 200)
 NAIL: Color = (128, 150, 205)
@@ -53,6 +56,7 @@ class Paper:
         behind: how dark the other side of the sheet shows through, 0 to 1.
         folds, coffee, specks, smudges: how many; a smudge is what an eraser leaves of a line.
         punched: how many holes are along the left edge.
+        printed: what is printed on the sheet, or None.
         shade: light at the darkest corner, as a share of the brightest.
         shadow: light within a shadow with an edge, likewise; shadow_edge: how soft that is [pixels of the picture].
         lamp: colour of the light.  glare: [grey levels] of a lamp's reflection.
@@ -83,6 +87,7 @@ class Paper:
     specks: int = 0
     smudges: int = 0
     punched: int = 0
+    printed: Print | None = None
     shade: float = 1.0
     shadow: float = 1.0
     shadow_edge: float = 3.0
@@ -164,12 +169,23 @@ PAPERS: dict[str, Paper] = {
     "hatched": replace(PHOTO, hatched=9.0),
     "punched": replace(PHOTO, punched=4),
     "smudges": replace(PENCIL, smudges=4),
+    "worksheet": replace(
+        PENCIL, printed=Print(fields=True, title=True, problem=3), tilt=6, turn=3, table=0.04
+    ),
+    "scanned worksheet": Paper(
+        printed=Print(tall=15, face=cv2.FONT_HERSHEY_DUPLEX, problem=5, answer=2), turn=1
+    ),
+    "letterhead": replace(
+        BALLPOINT, printed=Print(tall=20, face=cv2.FONT_HERSHEY_TRIPLEX, title=True), scale=1.6
+    ),
     "wide marker": replace(PHOTO, pen=10.0, color=(60, 120, 40), scale=0.8),
 }
 
 
 def photographed(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> tuple[bytes, Drawing]:
     """The picture file of a drawing on some paper, and the drawing in that picture's pixels."""
+    if paper.printed is not None:
+        drawing = _lowered(drawing, paper.printed)
     view, size = _view(drawing, paper, rng)
     sheet = _sheet(drawing, paper, rng)
     border = cv2.BORDER_CONSTANT if paper.table else cv2.BORDER_REPLICATE
@@ -178,7 +194,7 @@ def photographed(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> tu
     )
     if paper.table:
         inside = cv2.warpPerspective(np.ones(sheet.shape[:2], np.float32), view, size)
-        wood = np.array(TABLE, np.float32) + 9 * _grain((size[1], size[0]), 6, rng)[..., None]
+        wood = np.array(TABLE, np.float32) + 9 * grain((size[1], size[0]), 6, rng)[..., None]
         picture = picture * inside[..., None] + wood * (1 - inside[..., None])
     picture = _lit(picture, paper, rng)
     if paper.fingers:
@@ -223,7 +239,7 @@ def _view(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> tuple[Arr
     return view / view[2, 2], size
 
 
-def _carried(drawing: Drawing, view: Array, size: tuple[int, int]) -> Drawing:
+def _carried(drawing: Drawing, view: Array, size: tuple[float, float]) -> Drawing:
     def go(points: Any) -> Array:
         points = np.asarray(points, np.float64).reshape(-1, 1, 2)
         return np.asarray(cv2.perspectiveTransform(points, view)).reshape(-1, 2)
@@ -244,6 +260,12 @@ def _carried(drawing: Drawing, view: Array, size: tuple[int, int]) -> Drawing:
     )
 
 
+def _lowered(drawing: Drawing, printed: Print) -> Drawing:
+    """A drawing on a larger page, below what is printed above it."""
+    down = np.array([[1, 0, 0], [0, 1, printed.above], [0, 0, 1]])
+    return _carried(drawing, down, (drawing.width, drawing.height + printed.above + printed.below))
+
+
 # ---------------------------------------------------------------- the sheet and its ink
 
 
@@ -257,25 +279,27 @@ def _sheet(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
         )
     shape = ink.shape
     sheet = np.broadcast_to(np.array(paper.sheet, np.float32), (*shape, 3)).copy()
-    sheet += paper.texture * _grain(shape, 1.5, rng)[..., None]
+    sheet += paper.texture * grain(shape, 1.5, rng)[..., None]
     _rule(sheet, paper, rng)
+    if paper.printed is not None:
+        sheet = _under(sheet, typed(paper.printed, shape, paper.scale, rng), PRINT, paper)
     if paper.behind:
         sheet *= 1 - paper.behind * cv2.GaussianBlur(ink[:, ::-1], (0, 0), 2.0)[..., None]
     for _ in range(paper.coffee):
-        _stain(sheet, rng)
+        stain(sheet, rng)
     for _ in range(paper.smudges):
         _smudge(sheet, paper, rng)
     for _ in range(paper.folds):
-        _fold(sheet, rng)
+        fold(sheet, rng)
     for _ in range(paper.specks):
         at = (rng.uniform(0.05, 0.95, 2) * shape[::-1]).astype(int).tolist()
         cv2.circle(sheet, at, round(rng.uniform(1, 2.5)), (70, 70, 70), cv2.FILLED, cv2.LINE_AA)
     if paper.grain:
-        ink = ink * np.clip(1 - paper.grain * (0.5 + _grain(shape, 0.8, rng)), 0, 1)
+        ink = ink * np.clip(1 - paper.grain * (0.5 + grain(shape, 0.8, rng)), 0, 1)
     sheet = _under(sheet, ink, paper.color, paper)
     if second is not None and paper.second is not None:
         sheet = _under(sheet, second, paper.second, paper)
-    _punch(sheet, paper.punched)
+    punch(sheet, paper.punched)
     return sheet
 
 
@@ -372,15 +396,6 @@ def _smudge(sheet: Array, paper: Paper, rng: np.random.Generator) -> None:
     sheet *= 1 - (0.14 * cv2.GaussianBlur(ghost, (0, 0), 1.2) + 0.08 * spread)[..., None]
 
 
-def _punch(sheet: Array, holes: int) -> None:
-    """Holes along the left edge that show what is under the sheet."""
-    height, width = sheet.shape[:2]
-    for k in range(holes):
-        y = height * (0.5 + 0.22 * (k - 0.5 * (holes - 1)))
-        at = round(0.022 * width), round(y)
-        cv2.circle(sheet, at, round(0.01 * width), (50, 60, 70), cv2.FILLED, cv2.LINE_AA)
-
-
 def _rule(sheet: Array, paper: Paper, rng: np.random.Generator) -> None:
     height, width = sheet.shape[:2]
     step = (paper.ruled or paper.squared) * paper.scale
@@ -394,33 +409,6 @@ def _rule(sheet: Array, paper: Paper, rng: np.random.Generator) -> None:
         cv2.line(lines, (round(x), 0), (round(x), height), 255, max(1, wide // FINE), cv2.LINE_AA)
     share = (lines.astype(np.float32) / 255)[..., None]
     sheet[...] = sheet * (1 - share) + np.array(paper.ruling, np.float32) * share
-
-
-def _stain(sheet: Array, rng: np.random.Generator) -> None:
-    height, width = sheet.shape[:2]
-    at = np.array([width, height]) * rng.uniform(0.35, 0.65, 2)
-    y, x = np.mgrid[:height, :width].astype(np.float32)
-    radius, off = 0.2 * height, np.hypot(x - at[0], y - at[1])
-    ring = np.exp(-(((off - radius) / (0.02 * height)) ** 2)) + 0.3 * (off < radius)
-    sheet *= 1 - ring[..., None] * np.array([0.30, 0.17, 0.10], np.float32)
-
-
-def _fold(sheet: Array, rng: np.random.Generator) -> None:
-    """A crease: one side of it lies in a little less light, and its edge is lit and shaded."""
-    height, width = sheet.shape[:2]
-    y, x = np.mgrid[:height, :width].astype(np.float32)
-    a = rng.choice([0.0, 0.5 * math.pi]) + rng.normal(0, 0.05)
-    off = (x - width * rng.uniform(0.3, 0.7)) * math.cos(a) + (y - height * rng.uniform(0.3, 0.7)) * math.sin(
-        a
-    )
-    crease = -0.1 * np.exp(-((off / 3) ** 2)) + 0.05 * np.exp(-(((off - 5) / 4) ** 2))
-    sheet *= (1 + crease - 0.07 * (off > 0))[..., None]
-
-
-def _grain(shape: tuple[int, ...], size: float, rng: np.random.Generator) -> Array:
-    """Smooth noise of variance 1, about `size` pixels coarse."""
-    noise = cv2.GaussianBlur(rng.standard_normal(shape[:2], np.float32), (0, 0), size)
-    return np.asarray(noise / max(float(noise.std()), 1e-9))
 
 
 # ---------------------------------------------------------------- light and camera
