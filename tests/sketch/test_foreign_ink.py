@@ -118,3 +118,25 @@ def test_what_goes_in_bows_has_no_corners_where_they_meet(path: np.ndarray) -> N
             (reading,) = recognize(page(curve(path, hand, np.random.default_rng(seed)))).readings
             followed += len(reading.outline) > 12
     assert followed >= 16, followed  # of 20
+
+
+def letter_p(foot: float) -> list[Path]:
+    """A stem, and a shallow bow on it, which leaves a share of it below: straight sides would do for all else."""
+    r = (1 - foot) / 2
+    turn = np.linspace(-0.5 * math.pi, 0.5 * math.pi, 16)
+    bow = [(0.3 + 0.15 * math.cos(t), r + r * math.sin(t)) for t in turn]
+    return [[(0, 0), (0, 1)], [(0.02, 0.02), (0.3, 0), *bow, (0.05, 2 * r)]]
+
+
+def test_a_stem_that_runs_on_is_no_side() -> None:
+    """A P is no box: what goes along a box's sides does not leave it by a third of its size."""
+    beside = 0
+    for foot in (0.3, 0.4, 0.5):
+        for seed in range(4):
+            rng = np.random.default_rng(seed)
+            paths = [[(400 + 200 * u, 200 + 200 * v) for u, v in path] for path in letter_p(foot)]
+            (reading,) = recognize(page([s for path in paths for s in line(path, HAND, rng)])).readings
+            outline = np.ascontiguousarray(reading.outline)
+            off = max(abs(depth(x, y, outline)) for path in paths for x, y in path)
+            beside += off > 200 / 7
+    assert beside <= 3, beside  # of 12
