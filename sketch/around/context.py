@@ -26,6 +26,7 @@ Gaps = dict[tuple[Fitted, Fitted], tuple[float, Point]]  # of open lines: how wi
 
 # nats that an X, or a small circle, is likelier over a body, or over two, than elsewhere; an arrow less
 ANCHORS = 15.0
+ON_RIM = 0.25  # of an X's extent: as near to an outline's side is the middle of one that is drawn on it
 AXLE = 0.1  # of the extent of a round body: as near to its middle is an axle
 MARKED = (
     2.0  # times as large as a body, at most, is an X on it: a larger one is two rods that cross under a pin
@@ -56,6 +57,7 @@ class Context:
         self._gaps: Gaps = {}
         self._known: dict[Proposed, list[float]] = {}
         self._bodies: Around = {}
+        self._walls: Around = {}
         self._sizes = (0.0, 0.0)
 
     def told(self, likely: Sequence[Likely], size: float, drawn: float) -> list[list[float]]:
@@ -74,19 +76,22 @@ class Context:
             if p.gains[k] > 0:  # rods, though their ink may go around with others
                 courses[line] = p.course(line)
         bodies |= {line: row for line, (_, row) in courses.items()}
+        walls = _walls(likely)
         others = {c: self._bodies.get(c) or bodies[c] for c in self._bodies.keys() ^ bodies.keys()}
+        others |= {c: self._walls.get(c) or walls[c] for c in self._walls.keys() ^ walls.keys()}
         known = self._known if (size, drawn) == self._sizes else {}
         stay = [k for k, p in enumerate(proposed) if p in known]
         kept = set(stay).difference(stay[k] for k, _ in _beside([proposed[k] for k in stay], others))
         anew = [k for k in range(len(proposed)) if k not in kept]
-        near = {k: _Bodies(held, courses) for k in anew}
+        sides = {i for line in walls for i in line.pieces}
+        near = {k: _Bodies(held, courses, sides) for k in anew}
         every = list(bodies.items())
         sorts = [None if c.closed else c.kind for c in bodies]
         for k, b in _beside([proposed[k] for k in anew], bodies):
             near[anew[k]].add(*every[b], sorts[b])
         told = [_told(p, near[k], size, drawn) if k in near else known[p] for k, p in enumerate(proposed)]
         self._known = dict(zip(proposed, told, strict=True))
-        self._bodies, self._sizes = bodies, (size, drawn)
+        self._bodies, self._walls, self._sizes = bodies, walls, (size, drawn)
         gains = iter(told)
         out = [list(chain.from_iterable(islice(gains, len(own.patch.proposed)))) for own in likely]
         for n, k in _letters(likely, LETTER * size, self._gaps):
@@ -109,6 +114,40 @@ def _held(likely: Sequence[Likely]) -> Iterator[tuple[Proposed, int, int]]:
         yield leading[by], leading[by].bars[line - first[by]], int(counts[line])
 
 
+def _walls(likely: Sequence[Likely]) -> Around:
+    """The open lines, each with where it is, that are sides of one likely outline, and on which an X each stands: as an
+    outline it has no use for more than one, as walls they have."""
+    crosses = [mark for own in likely for mark in own.bodies if mark[0].kind == "cross"]
+    walls: Around = {}
+    for own in likely if len(crosses) > 1 else ():
+        for outline, box in own.closed:
+            if len(outline.pieces) == 1:
+                continue
+            on = [mark for mark in crosses if _is_on_rim(*mark, outline, box)]
+            sides = _stood_on(own.patch.whole, outline, on) if len(on) > 1 else {}
+            if len({line.pieces for line in sides}) > 1:
+                walls |= sides
+    return walls
+
+
+def _is_on_rim(cross: Fitted, row: Row, outline: Fitted, box: Row) -> bool:
+    """Whether an X is drawn on a side of a larger outline, neither in it nor over two.  row, box: where they are."""
+    (x, y), (x0, y0, x1, y1, _), extent = cross.middle, box, row[4]
+    near = x0 - extent < x < x1 + extent and y0 - extent < y < y1 + extent
+    return near and extent < outline.narrow and abs(depth(x, y, outline.outline)) < ON_RIM * extent
+
+
+def _stood_on(whole: Proposed, outline: Fitted, crosses: list[tuple[Fitted, Row]]) -> Around:
+    """The open lines that an outline's sides may be and on which some X stands, each with where it is."""
+    sides = (whole.candidates[k] for k in whole.bars)
+    courses = {line: whole.course(line) for line in sides if set(line.pieces) <= set(outline.pieces)}
+    return {
+        line: row
+        for line, (course, row) in courses.items()
+        if any(stands_on(cross, its[4], line, course, row) for cross, its in crosses)
+    }
+
+
 def _beside(proposed: list[Proposed], bodies: Around) -> list[list[int]]:
     """Pairs of what one piece proposed and a body that can matter to it, as numbers."""
     if not proposed or not bodies:
@@ -127,7 +166,9 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= 0.5 * (math.log(DOT * drawn / max(extent, 1e-9)) / DOT_SPREAD) ** 2
         if c.kind == "bar":
             gains[k] += HELD * bodies.held.get(c, 0)
+            gains[k] += NO_BODY * (not bodies.walls.isdisjoint(c.pieces))
         elif c.closed and len(c.pieces) > 1:
+            gains[k] -= NO_BODY * max(len(bodies.walls.intersection(c.pieces)) - 1, 0)
             gains[k] -= LINKED * sum(bodies.held_of.get(i, 0) for i in c.pieces)
         if len(c.pieces) > 1 and extent < LARGEST * drawn:
             if c.kind == "cross":
@@ -205,9 +246,12 @@ def _near_by(rows: list[Row]) -> list[list[int]]:
 class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
-    def __init__(self, held: dict[Fitted, int], courses: dict[Fitted, tuple[Array, Row]]) -> None:
-        """held: of open lines, how many of their ends small rings hold.  courses: of likely ones, as of `Proposed`."""
-        self.held = held
+    def __init__(
+        self, held: dict[Fitted, int], courses: dict[Fitted, tuple[Array, Row]], walls: set[int]
+    ) -> None:
+        """held: of open lines, how many of their ends small rings hold.  courses: of likely ones, as of `Proposed`.
+        walls: pieces of outlines on which an X each stands, where there are several."""
+        self.held, self.walls = held, walls
         self._courses = courses
         # likewise of the ink that each is most of; on a picture a line that others cross may be most of none
         self.held_of: dict[int, int] = {}

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from pages import Array, box, read
 
+from sketch.ink import Sketch, Stroke
+from sketch.recognize import Recognizer, recognize
 from sketch.synthetic import HANDS, Hand, arrow, circle, cross, curve, line, outline
 
 HAND = Hand(tremor=0.002, drift=0.008, rounding=0.02, overshoot=0.02, spacing=0.03, unsteady=0.7)
@@ -108,3 +110,44 @@ def test_a_rope_that_a_ring_holds_is_no_slip_where_it_ends_at_a_wheel(seed: int)
     scene = read(wedge, wheel, block, rope, ring, fall(rng)).scene
     assert len(scene.bodies) == 4
     assert [joint.bodies for joint in scene.joints] == [("b3", "b4")]
+
+
+def walls(rng: np.random.Generator) -> list[list[Array]]:
+    """Four lines around a room, which all but meet, an X on each, and a ball within."""
+    corners = [(140, 80), (1140, 80), (1140, 640), (140, 640)]
+    out = []
+    for (ax, ay), (bx, by) in zip(corners, [*corners[1:], corners[0]], strict=True):
+        sx, sy = np.sign([bx - ax, by - ay]) * 16
+        out.append(line([(ax + sx, ay + sy), (bx - sx, by - sy)], HAND, rng))
+        t = rng.uniform(0.25, 0.75)
+        out.append(cross((ax + t * (bx - ax), ay + t * (by - ay)), 36, HAND, rng))
+    return [*out, circle((500, 300), 40, HAND, rng)]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_walls_with_an_x_on_each_are_no_box(seed: int) -> None:
+    """A box has no use for four, and what is in a room is not in a body."""
+    scene = read(*walls(np.random.default_rng(seed))).scene
+    assert [body.anchored for body in scene.bodies] == [True, True, True, True, False]
+
+
+def test_walls_are_walls_in_whatever_order_their_x_come() -> None:
+    """What an X says of an outline is told of all of its sides, however far from it."""
+    ink = [Stroke(points) for part in walls(np.random.default_rng(1)) for points in part]
+    for seed in range(3):
+        sketch = Sketch([ink[k] for k in np.random.default_rng(seed).permutation(len(ink))], 1280, 720)
+        drawing = Recognizer(Sketch([], 1280, 720))
+        for count, stroke in enumerate(sketch.strokes, start=1):
+            drawing.add(stroke)
+            so_far = Sketch(sketch.strokes[:count], 1280, 720)
+            assert drawing.recognition().scene.to_json() == recognize(so_far).scene.to_json(), count
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_box_of_four_strokes_with_an_x_in_it_is_a_box(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    corners = [(300, 400), (900, 400), (900, 480), (300, 480)]
+    sides = [line([a, b], HAND, rng) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)]
+    marks = [cross((x, 440), 40, HAND, rng) for x in (380, 820)]
+    scene = read(*sides, *marks, circle((600, 200), 50, HAND, rng), fall(rng)).scene
+    assert [body.anchored for body in scene.bodies] == [True, False]
