@@ -314,8 +314,8 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     ink.round = fmin(out->conic_cost, out->circle_cost);
 
     Polygon found[SIDES + 1];
-    double p = hypot(back[0], back[2]), q = hypot(back[1], back[3]);
-    best_polygons(&ink, &r, &longer, p > LONG * q ? sqrt(sqrt(p / q)) : 1, found);
+    ink.longer = hypot(back[0], back[2]) / hypot(back[1], back[3]);
+    best_polygons(&ink, &r, &longer, ink.longer > LONG ? sqrt(sqrt(ink.longer)) : 1, found);
     for (int k = 0; k <= SIDES; k++) {
         double *v = out->vertices[k], cost = found[k].cost - found[k].undrawn;
         out->cost[k] = cost;

@@ -27,6 +27,7 @@ typedef struct {
     double gaps; /* what is missing of it at least, */
     double undrawn; /* nats for each length of a reading's outline where no ink is */
     double round; /* nats to say it as something round */
+    double longer; /* how many times as long as wide it is */
     double hopeless; /* a first split that costs more [nats] is not looked into further */
 } Ink;
 

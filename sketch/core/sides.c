@@ -6,6 +6,7 @@
 #include "outline.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Nobody draws a straight side straight. Sides bow this way and that, by shares of their lengths that are spread as Student's
  * t with four degrees, as writers differ and a hand slips; and nobody's are bent by much more than BENT. All of one
@@ -13,6 +14,12 @@
 static const double BOW = 0.0178;
 static const double BENT = 0.05;
 static const double ROUNDED = 0.018; /* usual mean bow, times the root of the number of sides */
+/* Between its corners ink runs the way its side does: the mean squared sine of the angle between them is less than SLANT,
+ * whatever the hand, or hardly more; of a long outline times the root of how much longer than wide it is, as the frame
+ * makes more of how that trembles. On a flight of steps it is 0.3, however near these are to one slope. */
+static const double SLANT = 0.08;
+static const double SLANTED = 0.12; /* the square of this is usual beyond that */
+static const double BESIDE = 0.125; /* of a side, from either corner: there ink turns from one side to the other */
 static const double STIFFNESS = 0.6; /* (tremor / bow)², while splitting: how much rather a side trembles than bows */
 static const double FLAT = 0.8; /* a corner that turns by less [rad] may be a bow, */
 static const double EVEN = 0.66; /* or less than this share of what it would in an even polygon */
@@ -120,12 +127,30 @@ static double undrawn(const Ink *ink, Polygon *p, const double *at, const double
     return sum;
 }
 
+/* Which way the ink runs from each sample to the next. */
+static void find_headings(Runs *r, const Ink *ink) {
+    const int n = r->n;
+    for (int i = 0; i < n; i++) {
+        const double dx = r->x[(i + 1) % n] - r->x[i], dy = r->y[(i + 1) % n] - r->y[i], l = length(dx, dy);
+        r->along_x[i] = l > 0 ? dx / l : 0;
+        r->along_y[i] = l > 0 ? dy / l : 0;
+    }
+    for (const Lift *lift = ink->lifts; lift < ink->lifts + ink->lift_count; lift++) {
+        const int last = (lift->next + n - 1) % n;
+        r->along_x[last] = r->along_y[last] = 0;
+    }
+    memcpy(r->along_x + n, r->along_x, n * sizeof *r->along_x);
+    memcpy(r->along_y + n, r->along_y, n * sizeof *r->along_y);
+}
+
 /* The polygon's cost, and its mean squared distance. Ink that overshoots a corner lies on its side's line: it pays for the
  * length beyond at a quarter. */
 INK_WIDE static void judge(const Ink *ink, Polygon *p) {
     const Runs *r = p->runs;
     /* the samples are there twice: none is beyond the end */
-    const double *x = r->x + p->start, *y = r->y + p->start, *factor = ink->factor + p->start, cap2 = ink->cap2;
+    const double *x = r->x + p->start, *y = r->y + p->start;
+    const double *along_x = r->along_x + p->start, *along_y = r->along_y + p->start, *factor = ink->factor + p->start,
+                 cap2 = ink->cap2;
     int k = p->k;
     Polygon drawn = *p; /* the drawn corners are the ends of the bows */
     drawn.stretch[0] = drawn.stretch[1] = 1;
@@ -134,8 +159,8 @@ INK_WIDE static void judge(const Ink *ink, Polygon *p) {
         drawn.side[q].x -= off * p->side[q].dy;
         drawn.side[q].y += off * p->side[q].dx;
     }
-    double at[2 * SIDES], share[SIDES], length_of[SIDES], stretched[SIDES], off[SAMPLES];
-    double sum = 0, around = 0, area = 0, bows = 0;
+    double at[2 * SIDES], share[SIDES], length_of[SIDES], stretched[SIDES], off[SAMPLES], slant[SAMPLES];
+    double sum = 0, slanted = 0, around = 0, area = 0, bows = 0;
     const int even = p->stretch[0] == 1 && p->stretch[1] == 1;
     polygon_corners(&drawn, at);
     for (int q = 0; q < k; q++) {
@@ -161,17 +186,20 @@ INK_WIDE static void judge(const Ink *ink, Polygon *p) {
             double off2 = h * h + 0.0625 * over * over;
             off2 = l > 0 ? off2 : px * px + py * py;
             off[i] = (off2 < cap2 ? off2 : cap2) * factor[i];
+            double sine = along_x[i] * uy - along_y[i] * ux;
+            slant[i] = t > BESIDE * l && t < (1 - BESIDE) * l ? sine * sine : 0;
         }
         double usual = (share[q] - bows) / BOW, most = share[q] / BENT;
         bent *= 1 + 0.25 * usual * usual;
         odd += 0.5 * most * most +
                odd_side(at + 2 * ((q + k - 1) % k), a, b, at + 2 * ((q + 2) % k), area, length_of[q] * per_around, k);
     }
-    for (int i = 0; i < r->n; i++) sum += off[i];
+    for (int i = 0; i < r->n; i++) sum += off[i], slanted += slant[i];
     /* The frame makes a straight wall as wide as it is long; one that turns a corner stays thin in it. */
     double thick = fabs(area) * per_around / THICK;
     p->square = sum / (r->n * fmin(thick * thick, 1));
     p->undrawn = undrawn(ink, p, at, length_of);
+    odd += 0.5 * ink->observations * fmax(slanted / r->n - SLANT * sqrt(ink->longer), 0) / (SLANTED * SLANTED);
     p->cost = misfit(p->square, ink->observations) + odd + 2.5 * log(bent) + retraced(ink, around) + p->undrawn;
 }
 
@@ -294,6 +322,7 @@ static int sharpest(const Runs *r) {
  * corner. */
 static void split_sides(const Ink *ink, Runs *r, const double stretch[2], Found *found) {
     const int sharp = sharpest(r);
+    find_headings(r, ink);
     runs_prepare(r, sharp, STIFFNESS);
     Split split;
     Polygon p;

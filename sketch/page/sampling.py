@@ -15,6 +15,7 @@ __all__ = ["Sampled", "arced", "sampled", "unevenness"]
 
 ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 FEW = 24  # points of a stroke: in more a corner that lies between two of them is hardly cut
+LEAST = 8  # points of a stroke: fewer are the corners of something drawn point by point, not samples of its course
 # of the longest chord: one that is longer is straight; the second share where the first leaves few
 FULL = 0.95, 0.9
 STEPS = 3  # full chords, at least, and a third of all: else the points are not in equal steps
@@ -50,7 +51,7 @@ def sampled(points: Array) -> Sampled:
     """A stroke, given its points, (n, 2) [pixels]."""
     if len(points) > 2 * ENOUGH:
         return Sampled(_thinned(points))
-    return _sharpened(points) if 4 < len(points) <= FEW else Sampled(points)
+    return _sharpened(points) if LEAST <= len(points) <= FEW else Sampled(points)
 
 
 def unevenness(parts: list[Array], middle: Array, axes: Array) -> float:
