@@ -303,7 +303,7 @@ def ink_mask(page: Page, reach: int) -> tuple[Image, Page, list[str]]:
         full = found.strength[found.span >= min(NOTABLE * size, found.span.max(initial=0))].max(initial=0)
     dark, rows = without_print(mask, page.darkness, *found.darker(_faintest(found, full, size)), reach)
     if rows:  # pen and paper are not to be told from it
-        note = f"left out {rows} rows of print or writing"
+        note = f"left out {rows} {'row' if rows == 1 else 'rows'} of print or writing"
         return ink_mask(replace(page, darkness=dark, left_out=(*page.left_out, note)), reach)
     frame = None if ruled or not photographed else _drop_frame(mask, found, reach)
     sheet = page
