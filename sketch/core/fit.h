@@ -18,8 +18,8 @@ enum {
 typedef struct {
     int n;
     double x[2 * SAMPLES], y[2 * SAMPLES]; /* the samples twice over, so that a run may pass the end */
-    double along_x[2 * SAMPLES],
-        along_y[2 * SAMPLES]; /* unit vectors to the next of each; none where the pen was lifted */
+    /* Which way it goes from each to the next: of length 1, or 0 where the pen was lifted. */
+    double along_x[2 * SAMPLES], along_y[2 * SAMPLES];
     double sx[2 * SAMPLES + 1], sy[2 * SAMPLES + 1];
     double sxx[2 * SAMPLES + 1], sxy[2 * SAMPLES + 1], syy[2 * SAMPLES + 1];
     double six[2 * SAMPLES + 1], siy[2 * SAMPLES + 1];   /* x and y times the index, */

@@ -149,8 +149,8 @@ INK_WIDE static void judge(const Ink *ink, Polygon *p) {
     const Runs *r = p->runs;
     /* the samples are there twice: none is beyond the end */
     const double *x = r->x + p->start, *y = r->y + p->start;
-    const double *along_x = r->along_x + p->start, *along_y = r->along_y + p->start, *factor = ink->factor + p->start,
-                 cap2 = ink->cap2;
+    const double *along_x = r->along_x + p->start, *along_y = r->along_y + p->start;
+    const double *factor = ink->factor + p->start, cap2 = ink->cap2;
     int k = p->k;
     Polygon drawn = *p; /* the drawn corners are the ends of the bows */
     drawn.stretch[0] = drawn.stretch[1] = 1;

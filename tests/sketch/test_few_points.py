@@ -14,6 +14,7 @@ from sketch.page.pieces import Page
 from sketch.page.sampling import arced, sampled, unevenness
 from sketch.shapes.outlines import read_outline
 from sketch.synthetic import HANDS, Hand, circle, ellipse, outline
+from tests.benchmarks.drawings import overlap
 
 
 def in_steps(path: np.ndarray, count: int) -> np.ndarray:
@@ -172,3 +173,19 @@ def test_many_points_are_thinned_and_others_kept() -> None:
     assert np.array_equal(sampled(hexagon).points, hexagon)
     long = in_steps(closed(box(0, 0, 300, 200), 0.3), 100_000)
     assert len(sampled(long).points) < 5000
+
+
+@pytest.mark.parametrize("first", range(5))
+@pytest.mark.parametrize(
+    "corners",
+    [
+        [(0, 0), (200, 0), (200, 200), (100, 300), (0, 200)],
+        [(0, 0), (150, 0), (200, 100), (150, 200), (0, 200), (-50, 100)],
+    ],
+    ids=["house", "hexagon"],
+)
+def test_corners_alone_are_the_outline_between_them(corners: list[tuple[float, float]], first: int) -> None:
+    """Though some of the sides are equally long: fewer points than this are no samples of a course."""
+    meant = np.array([300, 200]) + np.roll(np.array(corners, float), first, axis=0)
+    (reading,) = read([np.concatenate([meant, meant[:1]])]).readings
+    assert overlap(meant, reading.outline) > 0.99

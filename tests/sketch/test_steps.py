@@ -1,4 +1,4 @@
-"""Outlines with corners that turn inward, and outlines of which a file has the corners alone."""
+"""A flight of steps: its ink is as near to the ramp over it as a careless hand's would be."""
 
 import numpy as np
 import pytest
@@ -7,9 +7,6 @@ from sketch import recognize
 from sketch.ink import Sketch, Stroke
 from sketch.synthetic import HANDS, outline
 from tests.benchmarks.drawings import overlap
-
-HOUSE = [(0, 0), (200, 0), (200, 200), (100, 300), (0, 200)]
-HEXAGON = [(0, 0), (150, 0), (200, 100), (150, 200), (0, 200), (-50, 100)]
 
 
 def steps(count: int) -> list[tuple[float, float]]:
@@ -23,10 +20,9 @@ def steps(count: int) -> list[tuple[float, float]]:
 
 def share_read(corners: list[tuple[float, float]], strokes: list[np.ndarray]) -> float:
     """How much of what is meant and of what is read is in both."""
-    readings = recognize(Sketch([Stroke(s) for s in strokes], width=1000, height=700)).readings
-    assert len(readings) == 1
-    assert readings[0].kind == "polygon"
-    return overlap(np.array(corners, float), readings[0].outline)
+    (reading,) = recognize(Sketch([Stroke(s) for s in strokes], width=1000, height=700)).readings
+    assert reading.kind == "polygon"
+    return overlap(np.array(corners, float), reading.outline)
 
 
 @pytest.mark.parametrize("count", [3, 4])
@@ -37,10 +33,3 @@ def test_a_flight_of_steps_is_no_ramp(hand, count):
         strokes = outline(corners, HANDS[hand], np.random.default_rng(seed))
         # a ramp over all steps, or as much beside them as within, has 0.75 to 0.8 of them
         assert share_read(corners, strokes) > 0.87, seed
-
-
-@pytest.mark.parametrize("first", range(5))
-@pytest.mark.parametrize("corners", [HOUSE, HEXAGON], ids=["house", "hexagon"])
-def test_corners_alone_are_the_outline_between_them(corners, first):
-    corners = [(300 + x, 200 + y) for x, y in np.roll(corners, first, axis=0).tolist()]
-    assert share_read(corners, [np.array([*corners, corners[0]])]) > 0.99
