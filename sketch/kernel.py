@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+from array import array as numbers
 from collections.abc import Mapping, Sequence
 from itertools import accumulate, chain
 from typing import NamedTuple
@@ -155,7 +156,7 @@ def measure(strokes: list[Array]) -> Strokes:
     """Clean, sample and measure strokes, each (n, 2) in pixels."""
     count = len(strokes)
     xy = np.ascontiguousarray(np.concatenate([np.empty((0, 2)), *strokes]), dtype=np.float64)
-    ends = np.cumsum([len(s) for s in strokes], dtype=np.int32)
+    ends = np.fromiter(accumulate(map(len, strokes)), dtype=np.int32)
     out = Strokes(
         np.empty_like(xy),
         np.empty_like(ends),
@@ -185,17 +186,18 @@ def bar(known: Places, name: int) -> tuple[int, float]:
 def crossing(bars: Array) -> tuple[float, float] | None:
     """Nats of how far from their middles two bars cross, given their ends, (4, 2), and of how unlike they are; None for
     no X (see core/cross.c)."""
-    at, odd = address(bars), (_double * 2)()
-    if not _crossing(at, at + 16, at + 32, at + 48, odd):
+    at, odd = address(bars), np.empty(2)
+    if not _crossing(at, at + 16, at + 32, at + 48, address(odd)):
         return None
-    return odd[0], odd[1]
+    return float(odd[0]), float(odd[1])
 
 
 def fit_cross(known: Places, names: tuple[int, ...], most: float) -> Mark | None:
     """An X of one stroke or two; None where there is none in `most` nats (see core/cross.c)."""
     out = np.empty((10, 2))
-    which, at = (_int * len(names))(*names), address(out)
-    if not _cross(known.samples, known.residual, known.vertices, known.facts, which, len(names), most, at):
+    which, at = numbers("i", names), address(out)
+    ink = known.samples, known.residual, known.vertices, known.facts, address(which)
+    if not _cross(*ink, len(names), most, at):
         return None
     cost, rough = out[0].tolist()
     return Mark(names, cost, rough, out[1:])
@@ -218,10 +220,9 @@ def fit_arrows(known: Places, shafts: Sequence[Shaft], worse: float) -> list[Mar
         given += tail + toward
         most += len(names) ** 2 if head[1] else WHOLE_WAYS
     count, whole = len(ends), len(which)
-    numbers = (_int * (whole + 3 * count + ARROW_STROKES * most))(*which, *ends, *heads)
-    out = np.empty(13 * most)
-    at = ctypes.addressof(numbers)
-    groups = at + 4 * (whole + 3 * count)
+    out, groups = np.empty(13 * most), np.empty(ARROW_STROKES * most, dtype=np.int32)
+    ints, doubles = numbers("i", which + ends + heads), numbers("d", given)
+    at = address(ints)
     found = _arrows(
         known.samples,
         known.measure,
@@ -231,25 +232,19 @@ def fit_arrows(known: Places, shafts: Sequence[Shaft], worse: float) -> list[Mar
         at + 4 * whole,
         count,
         at + 4 * (whole + count),
-        (_double * len(given))(*given),
+        address(doubles),
         worse,
         address(out),
-        groups,
+        address(groups),
     )
     if not found:
         return []
     arrows = out[: 13 * found].reshape(found, 13).copy()
     figures = arrows[:, 1:].reshape(found, 6, 2).copy()
-    first = whole + 3 * count
-    its = numbers[first : first + ARROW_STROKES * found]
+    strokes = groups[: ARROW_STROKES * found].reshape(found, ARROW_STROKES).tolist()
     return [
-        Mark(
-            tuple(i for i in its[ARROW_STROKES * k : ARROW_STROKES * (k + 1)] if i >= 0),
-            cost,
-            0.0,
-            figures[k],
-        )
-        for k, cost in enumerate(arrows[:, 0].tolist())
+        Mark(tuple([i for i in its if i >= 0]), cost, 0.0, figure)
+        for its, cost, figure in zip(strokes, arrows[:, 0].tolist(), figures, strict=True)
     ]
 
 
@@ -280,7 +275,8 @@ def cuts(strokes: Sequence[Array]) -> list[tuple[list[float], list[int]]]:
     what the parts between look like: 0 a loop, 1 a straight line, 2 a way (see core/cut.c)."""
     count = len(strokes)
     points = np.concatenate([np.empty((0, 2)), *strokes])
-    ends, parts = np.cumsum([len(s) for s in strokes], dtype=np.int32), np.empty(count, dtype=np.int32)
+    ends = np.fromiter(accumulate(map(len, strokes)), dtype=np.int32)
+    parts = np.empty(count, dtype=np.int32)
     shares, kinds = np.empty((count, PARTS + 1)), np.empty((count, PARTS), dtype=np.int32)
     _cuts(address(points), address(ends), count, address(shares), address(kinds), address(parts))
     return [

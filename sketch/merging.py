@@ -63,9 +63,9 @@ def _bodies_gone_over(chosen: list[Chosen], kept: Kept) -> list[Chosen]:
     for side in at.T:
         close &= np.abs(side[:, None] - side) <= far
     gone: set[int] = set()  # into another
-    for a, b in np.argwhere(np.triu(close, 1)).tolist():
+    for a, b in np.argwhere(close).tolist():
         k, j = closed[a], closed[b]
-        if k not in gone and j not in gone and _in_one_place(chosen[j].fit, chosen[k].fit):
+        if k < j and k not in gone and j not in gone and _in_one_place(chosen[j].fit, chosen[k].fit):
             gone.add(j)
             chosen[k] = kept(Chosen.along_with, chosen[k], chosen[j])
     return [chosen[k] for k in range(len(chosen)) if k not in gone]
@@ -85,14 +85,17 @@ def _in_one_place(a: Fitted, b: Fitted) -> bool:
 
 def _marks_gone_over(marks: list[Chosen], kept: Kept) -> list[Chosen]:
     """Some arrows, or some crosses, with those between the same places joined to the best of them."""
+    if len(marks) < 2:
+        return marks
     marks = sorted(marks, key=lambda c: -c.gain)
     boxes = boxes_around([c.fit.outline for c in marks])
     reach = np.array([SAME_PLACE * math.dist(*c.fit.outline[:2].tolist()) for c in marks])
     apart = [np.abs(side[:, None] - side) for side in boxes.T]
     close = np.maximum.reduce(apart) < reach  # for else their ends are further apart
     before: dict[int, list[int]] = {}
-    for n, k in np.argwhere(np.tril(close, -1)).tolist():
-        before.setdefault(n, []).append(k)
+    for n, k in np.argwhere(close).tolist():
+        if k < n:
+            before.setdefault(n, []).append(k)
     whole: dict[int, Chosen] = {}
     for n, mark in enumerate(marks):
         for k in before.get(n, ()):

@@ -86,6 +86,8 @@ def best(kept: Kept, *parts: Part) -> list[tuple[int, int]]:
 
 def _solved(kept: Kept, *parts: Part) -> list[tuple[int, int]]:
     """The best packing of a cluster: the part, and the index in it, of each."""
+    if len(parts) == 1 and len(parts[0].groups) == 1:
+        return [(0, parts[0].index[0])]
     groups = [g for own in parts for g in zip(own.groups, own.gains, strict=True)]
     at = [(q, k) for q, own in enumerate(parts) for k in own.index]
     left = _not_outdone(groups)

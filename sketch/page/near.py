@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from array import array as numbers
 from collections.abc import Sequence
 from itertools import accumulate
 
@@ -84,10 +85,11 @@ class Near(Boxes):
         are, and how many.  places: of the strokes.  rivals: as of `LooseEnds`."""
         super().__init__(boxes)
         self._arrays = strokes, sizes, points  # kept, as the library is told where they are
-        self._box, self._tips, self._costs = (_double * 4)(), np.empty((2, 2)), np.empty(len(boxes))
+        self._box, self._tips, self._costs = np.empty(4), np.empty((2, 2)), np.empty(len(boxes))
         self._places, self._rivals, self._measure = places, rivals, places.measure
         self._sizes, self._points = address(sizes), address(points)
-        self._into_tips, self._into_costs = address(self._tips), address(self._costs)
+        out = self._box, self._tips, self._costs
+        self._into_box, self._into_tips, self._into_costs = map(address, out)
 
     def again(
         self, outline: Array, reach: float, names: tuple[int, ...], scale: float, shaft: float
@@ -97,11 +99,11 @@ class Near(Boxes):
 
         names: of which it is.  scale: of a body, or 0.  shaft: of an arrow, or 0 [pixels].
         """
-        which = (_int * len(names))(*names)
+        which = numbers("i", names)
         of = len(self.boxes), self._at, self._places.samples, self._sizes, self._places.facts, *self._rivals
-        line = address(outline), len(outline), reach, which, len(names), scale, shaft
-        count = _again(*of, *line, self._box, self._into, self._into_costs)
-        x0, y0, x1, y1 = self._box
+        line = address(outline), len(outline), reach, address(which), len(names), scale, shaft
+        count = _again(*of, *line, self._into_box, self._into, self._into_costs)
+        x0, y0, x1, y1 = self._box.tolist()
         found = zip(self._first(count), self._costs[:count].tolist(), strict=True) if count else ()
         return dict(found), (x0, y0, x1, y1)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from sketch.kernel import joined, measure, places
 from sketch.lazy import lazy
+from sketch.library import address
 from sketch.page.loose import Chain, End, LooseEnds
 from sketch.page.near import Near
 from sketch.scoring import unread
@@ -152,7 +153,6 @@ class Page:
         self._points = np.empty((0, 2), dtype=np.int64)  # of each piece where its points are, and how many
         self._facts = np.empty((0, FACTS))  # of each, as of core/facts.h
         self._fresh: list[int] = []  # those of which these are not known yet
-        self._look()
 
     def add(self, strokes: list[Array], given: Sequence[Array | None] = ()) -> range:
         """Measure further strokes, each (n, 2) in pixels; returns their indices.
@@ -160,25 +160,24 @@ class Page:
         given: of each, if of any, which of its points it came with, where they are few and in equal steps.
         """
         first = len(self._boxes)
-        new = measure(strokes)
-        points = np.split(new.points[: new.ends[-1]], new.ends[:-1])
+        new, count = measure(strokes), len(strokes)
         self.strokes = joined(self.strokes, new)
-        count = len(strokes)
+        stops = new.ends.tolist()
+        bounds = list(zip([0, *stops], stops, strict=False))
         self._boxes = np.concatenate([self._boxes, np.full((count, 4), np.nan)])
         self._sizes = np.concatenate([self._sizes, np.zeros(count)])
         ends = np.zeros((count, 2, 2))
-        begins = np.concatenate([[0], new.ends[:-1]])[:count]
-        places = np.stack([new.points.ctypes.data + 16 * begins, new.ends - begins], axis=1)
-        self._points = np.concatenate([self._points, places])
+        at = address(new.points)
+        places = [(at + 16 * begin, end - begin) for begin, end in bounds]
+        self._points = np.concatenate([self._points, np.array(places, dtype=np.int64)])
         residuals = new.residual.tolist()
         for k, m in enumerate(new.measure.tolist()):
             if m[6] > 0:  # of a length, and not so tiny that nothing is left of its square
-                i = first + k
-                self.pieces[i] = _piece(i, i, points[k], m, residuals[k], new.vertices[k], self._dot)
+                i, points = first + k, new.points[slice(*bounds[k])]
                 few = given[k] if given else None
-                if few is not None:
-                    self.pieces[i] = replace(self.pieces[i], given=_among(points[k], few))
-                piece = self.pieces[i]
+                few = None if few is None else _among(points, few)
+                piece = _piece(i, i, points, m, residuals[k], new.vertices[k], self._dot, few)
+                self.pieces[i] = piece
                 self._boxes[i], ends[k] = piece.box, piece.ends
                 self._sizes[i] = max(piece.scale, piece.extent / 2)
         self.ends.add(ends, new.measure[:, 0])
@@ -201,12 +200,11 @@ class Page:
     def settle(self) -> list[int]:
         """Measure the page's size and its usual stroke anew; returns the pieces that are other pieces now."""
         live = list(self.pieces)
-        extent = 3 * self.strokes.measure[live, 6]
-        # The median, without np.median: that loads numpy.ma, a twentieth of what reading a sketch costs.
-        middle = np.sort(extent)[[(len(live) - 1) // 2, len(live) // 2]].mean() if live else 0.0
-        dot = DOT * float(middle)
-        small = np.flatnonzero(extent < max(dot, self._dot)) if dot != self._dot else ()
-        changed = [live[k] for k in small]
+        extents = [p.extent for p in self.pieces.values()]
+        in_order, half = sorted(extents), len(live) // 2
+        dot = DOT * (in_order[half] + in_order[~half]) / 2 if live else 0.0  # of the median
+        less = max(dot, self._dot) if dot != self._dot else 0.0
+        changed = [i for i, extent in zip(live, extents, strict=True) if extent < less]
         self._dot = dot
         for i in changed:
             p = self.pieces[i]
@@ -296,6 +294,7 @@ def _piece(
     residual: list[float],
     vertices: Array,
     dot: float,
+    given: Array | None,
 ) -> Piece:
     length, x0, y0, x1, y1, gap, spread, across = m
     extent = 3 * spread
@@ -314,6 +313,7 @@ def _piece(
         residual=residual,
         vertices=vertices,
         across=across,
+        given=given,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from array import array as numbers
 from itertools import accumulate
 from typing import Any
 
@@ -130,10 +131,10 @@ def fit_closed(parts: list[Array], least_axis: float, observations: float, hopel
     hopeless: a first split that costs more [nats] is not looked into further.
     """
     xy = np.ascontiguousarray(np.concatenate(parts) if len(parts) > 1 else parts[0], dtype=np.float64)
-    ends = (_int * len(parts))(*accumulate(map(len, parts)))
+    ends = numbers("i", accumulate(map(len, parts)))
     fit = ClosedFit(np.empty(_CLOSED_NUMBERS + 2 * len(xy) + LIFT * len(parts)))
     at, scratch = fit.address, fit.address + 8 * _CLOSED_NUMBERS
-    _closed(address(xy), ends, len(parts), least_axis, observations, hopeless, at, scratch)
+    _closed(address(xy), address(ends), len(parts), least_axis, observations, hopeless, at, scratch)
     return fit
 
 

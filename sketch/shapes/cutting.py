@@ -42,11 +42,13 @@ def _parts(points: Array, shares: list[float], kinds: list[int]) -> list[Array]:
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     at = np.searchsorted(along, np.array(shares) * along[-1])
     parts = [points[a : b + 1] for a, b, kind in zip(at, at[1:], kinds, strict=False) if kind != BETWEEN]
+    if len(parts) < 2:
+        return [points]
     least = [LEAST[kind] for kind in kinds if kind != BETWEEN]
     page = Page()
     page.add([points, *parts])
     page.settle()
-    if len(parts) < 2 or len(page.pieces) <= len(parts):
+    if len(page.pieces) <= len(parts):
         return [points]
     whole, *things = page.pieces.values()
     # the whole is to be said as finely as its parts: with their number of observations, and to their precision
