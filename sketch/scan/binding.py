@@ -20,6 +20,7 @@ __all__ = [
     "along_lines",
     "belt",
     "bend",
+    "cheapest_cover",
     "coarseness",
     "columns",
     "course_length",
@@ -77,6 +78,8 @@ def _library() -> ctypes.CDLL:
     core.ink_length.restype = double
     core.ink_coarseness.argtypes = [*[pointer] * 3, int32, pointer, int32, int32, double, double]
     core.ink_coarseness.restype = double
+    core.ink_cover.argtypes = [*[pointer] * 6, int32, pointer, int32, pointer, int32, pointer]
+    core.ink_cover.restype = int32
     core.ink_belt.argtypes = [_MASK, int32, int32, _DOUBLES, ctypes.c_double, _DOUBLES]
     core.ink_belt.restype = int32
     core.ink_columns.argtypes = [_MASK, int32, _INTS, _INTS, int32, int32, _INTS, _INTS]
@@ -187,6 +190,32 @@ def coarseness(
     line = np.ascontiguousarray(corners)
     given = address(ink), address(ends), address(worth), len(ends), address(line), len(line)
     return float(_library().ink_coarseness(*given, closed, slack, size or np.inf))
+
+
+def cheapest_cover(
+    of: tuple[NDArray[np.int32], NDArray[np.int32]],
+    left: NDArray[np.bool_],
+    cost: NDArray[np.float64],
+    free: NDArray[np.float64],
+    length: NDArray[np.float64],
+    some: NDArray[np.int32],
+    first: Sequence[int],
+) -> tuple[list[int], float]:
+    """The readings among `some` that say a drawing's ink for the least, and the nats that saves against saying it
+    freely (see core/cover.c).
+
+    of: the stretches of all readings, one after another, and of each reading the first of its own, and one more.
+    left: whether each is ink that is left over together.  cost: nats to say each.  free, length: of each stretch, nats
+    to say it freely, and pen widths.  first: a cover to begin with.
+    """
+    chosen, most = np.empty(len(some) + 1, np.int32), np.empty(1)
+    chosen[: len(first)] = first
+    given = [address(values) for values in (of[1], of[0], left, cost, free, length)]
+    ways = address(some), len(some), address(chosen), len(first), address(most)
+    found = int(_library().ink_cover(*given, len(free), *ways))
+    if found < 0:
+        raise MemoryError("no memory for covers of the ink")
+    return chosen[:found].tolist(), float(most[0])
 
 
 def along_lines(
