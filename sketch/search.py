@@ -100,6 +100,8 @@ def _solved(kept: Kept, *parts: Part) -> list[tuple[int, int]]:
 
 def _clusters(inks: Sequence[Group]) -> list[list[int]]:
     """Those that share ink, however indirectly; without those that have none."""
+    if len(inks) == 1:
+        return [[0]] if inks[0] else []
     parent: dict[int, int] = {}
 
     def root(i: int) -> int:
@@ -219,6 +221,8 @@ def _packed(groups: Sequence[Packed]) -> list[int]:
     """The best packing of a cluster, as indices."""
     if len(groups) == 1:
         return [0]
+    if len(groups) == 2 and groups[0][1] != groups[1][1]:  # as they share ink, the better one
+        return [0] if groups[0][1] > groups[1][1] else [1]
     if len({i for ink, _ in groups for i in ink}) > MOST_PIECES:
         return _greedy(_as_bits(groups), np.array([gain for _, gain in groups]))
     best, is_best = _branched(groups, _shares(groups), FEW_LOOKS)

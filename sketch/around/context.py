@@ -232,15 +232,14 @@ def _is_pinned(at: Point, reach: float, pins: list[Point]) -> bool:
     return any(abs(u - x) < reach and abs(v - y) < reach and math.dist((u, v), at) < reach for u, v in pins)
 
 
-def _near_by(rows: list[Row]) -> list[list[int]]:
+def _near_by(rows: list[Row]) -> list[tuple[int, int]]:
     """Pairs of bars, given where they are, whose boxes are no further apart than NEAR_BY of the larger one's extent."""
     if len(rows) < 2:
         return []
     x0, y0, x1, y1, extent = np.array(rows).T
     reach = NEAR_BY * np.maximum(extent, extent[:, None])
     far = (x0 > x1[:, None] + reach) | (y0 > y1[:, None] + reach)
-    pairs: list[list[int]] = np.argwhere(np.triu(~(far | far.T), 1)).tolist()
-    return pairs
+    return [(a, b) for a, b in np.argwhere(~(far | far.T)).tolist() if a < b]
 
 
 class _Bodies:

@@ -7,7 +7,7 @@ from collections.abc import Set
 
 import numpy as np
 
-from sketch.page.pieces import Page, Piece
+from sketch.page.pieces import Page
 
 __all__ = ["hatching"]
 
@@ -26,13 +26,15 @@ def hatching(page: Page, largest: float, idle: Set[int]) -> set[int]:
 
     largest: [pixels]; longer ones are none.  idle: those that mean nothing by themselves.
     """
-
-    def may_be(p: Piece) -> bool:
-        return p.gap < largest and p.gap > LONG * p.length and p.straight < STRAIGHT
-
-    if sum(may_be(page.pieces[i]) for i in idle) < FEWEST - BUT:
+    if len(idle) < FEWEST - BUT:
         return set()
-    straight = [p for p in page.pieces.values() if may_be(p)]
+    live = np.fromiter(page.pieces, dtype=np.intp)
+    length, gap = page.strokes.measure[live][:, [0, 5]].T
+    off = np.sqrt(page.strokes.residual[live, 1])
+    may_be = live[(gap < largest) & (gap > LONG * length) & (off < STRAIGHT * length)].tolist()
+    if len(idle & set(may_be)) < FEWEST - BUT:
+        return set()
+    straight = [page.pieces[i] for i in may_be]
     ends = np.array([p.ends for p in straight]) @ (1, 1j)
     ways, middles = ends[:, 1] - ends[:, 0], (ends[:, 0] + ends[:, 1]) / 2
     longs = np.abs(ways)

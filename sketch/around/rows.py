@@ -20,7 +20,9 @@ def near_one_another(page: Page, largest: float, idle: Set[int]) -> dict[int, li
     What is between two words is as wide as the largest of their strokes.
     """
     near: dict[int, list[int]] = {i: [] for i, p in page.pieces.items() if p.extent < largest}
-    for i, j in words(page.strokes, {i: page.pieces[i].extent for i in near}, BETWEEN):
+    for i, j in (
+        words(page.strokes, {i: page.pieces[i].extent for i in near}, BETWEEN) if len(near) > 1 else ()
+    ):
         near[i].append(j)
         near[j].append(i)
     tall = dict[int, float]()

@@ -79,6 +79,8 @@ def written(
     }
     meant = {i for c, *_ in chosen if c.kind != "bar" and c not in idle_crosses for i in c.pieces}
     unmeant = page.pieces.keys() - meant - remains
+    if not (unmeant or pointing or letters or remains):
+        return told
     rows, idle, known = _spread(page, marks, chosen, pointing | unmeant | letters - pins, kept)
     lone = [page.pieces[i] for i in sorted(idle)]
     bars = (p.candidates[k] for p, gains in zip(proposed, told, strict=True) for k in p.bars if gains[k] > 0)

@@ -55,8 +55,9 @@ INK_WIDE void runs_prepare(Runs *r, int begin, double stiffness) {
         r->siix[i + 1] = r->siix[i] + (double)i * i * x;
         r->siiy[i + 1] = r->siiy[i] + (double)i * i * y;
     }
-    double mean2[SAMPLES + 1], squares[SAMPLES + 1], inverse[SAMPLES + 1], per_step[SAMPLES + 1];
+    double count[SAMPLES + 1], mean2[SAMPLES + 1], squares[SAMPLES + 1], inverse[SAMPLES + 1], per_step[SAMPLES + 1];
     for (int m = 2; m <= n; m++) {
+        count[m] = m;
         inverse[m] = 1.0 / m;
         mean2[m] = (m + 1) / (3.0 * (m - 1));
         per_step[m] = 2.0 / (m - 1);
@@ -73,7 +74,7 @@ INK_WIDE void runs_prepare(Runs *r, int begin, double stiffness) {
             double xy = r->sxy[e] - r->sxy[i] - ax * ay * inverse[m];
             double yy = r->syy[e] - r->syy[i] - ay * ay * inverse[m];
             double half = 0.5 * (xx - yy), mid = 0.5 * (xx + yy), spread = sqrt(half * half + xy * xy);
-            double most = mid + spread, c = 0.5 * (i + e - 1), k = per_step[m];
+            double most = mid + spread, c = i + 0.5 * (count[m] - 1), k = per_step[m];
             double qx =
                 (r->siix[e] - r->siix[i] - 2 * c * (r->six[e] - r->six[i]) + c * c * ax) * k * k - mean2[m] * ax;
             double qy =
@@ -83,7 +84,7 @@ INK_WIDE void runs_prepare(Runs *r, int begin, double stiffness) {
             double under = spread > 0 ? 2 * spread : INFINITY, length2 = 12 * most > 1e-12 ? 12 * most : 1e-12;
             bowed[m] = along / under;
             least[m] = mid - spread > 0 ? mid - spread : 0;
-            per_length[m] = m / length2;
+            per_length[m] = count[m] / length2;
         }
         double *cost = r->cost[i];
         cost[0] = cost[1] = 0;

@@ -161,7 +161,7 @@ class Page:
         """
         first = len(self._boxes)
         new, count = measure(strokes), len(strokes)
-        self.strokes = joined(self.strokes, new)
+        self.strokes = joined(self.strokes, new) if first else new
         stops = new.ends.tolist()
         bounds = list(zip([0, *stops], stops, strict=False))
         self._boxes = np.concatenate([self._boxes, np.full((count, 4), np.nan)])

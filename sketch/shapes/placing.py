@@ -37,10 +37,9 @@ def placed(page: Page, fitted: Fitted) -> Placed:
     if kind == "circle" or (kind in ("rectangle", "polygon") and sides <= SIDES):
         ink = np.concatenate([page.pieces[i].points for i in fitted.pieces])
         if kind == "circle":
-            middle = outline.mean(axis=0)
-            ring = outline - middle
+            ring = outline - fitted.middle
             radius = math.hypot(*ring[0].tolist())
-            found = place(ink, np.array([*middle, radius]), 0)
+            found = place(ink, np.array([*fitted.middle, radius]), 0)
             if found is not None:
                 outline = found[:2] + ring * (found[2] / radius)
         else:
@@ -54,15 +53,13 @@ def _error(page: Page, c: Fitted) -> float:
     if not (c.closed or c.kind == "bar"):
         return 0.0
     pieces = [page.pieces[i] for i in c.pieces]
-    length = sum(p.length for p in pieces)
     if c.kind == "circle":
-        middle = c.outline.mean(axis=0)
-        radius = math.dist(c.outline[0], middle)
-        off = [np.hypot(*(page.strokes.samples[p.stroke] - middle).T) - radius for p in pieces]
-        square = sum(p.length * float(np.mean(d * d)) for p, d in zip(pieces, off, strict=True)) / length
+        radius = math.dist(c.outline[0].tolist(), c.middle)
+        off = [np.hypot(*(page.strokes.samples[p.stroke] - c.middle).T) - radius for p in pieces]
+        squares = [float(np.add.reduce(d * d)) / len(d) for d in off]
     else:
         around = c.outline if c.closed else np.concatenate([c.outline, c.outline[-2:0:-1]])  # forth and back
-        off2 = off_outline(page.strokes, [p.stroke for p in pieces], around)
-        square = sum(p.length * d for p, d in zip(pieces, off2, strict=True)) / length
+        squares = off_outline(page.strokes, [p.stroke for p in pieces], around)
+    square = sum(p.length * d for p, d in zip(pieces, squares, strict=True)) / sum(p.length for p in pieces)
     parameters = {"circle": 3, "ellipse": 5, "rectangle": 5}.get(c.kind, 2 * len(c.outline))
     return math.sqrt(square * parameters / max(sum(p.observations for p in pieces), parameters))

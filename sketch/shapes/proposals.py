@@ -121,7 +121,8 @@ class Proposed:
     @lazy
     def ends(self) -> Array:
         """The ends of each bar [pixels], (bars, 2, 2)."""
-        return np.array([self.candidates[k].outline[[0, -1]] for k in self.bars])
+        lines = [self.candidates[k].outline for k in self.bars]
+        return np.concatenate([line[:: len(line) - 1] for line in lines]).reshape(-1, 2, 2)
 
     def course(self, line: Fitted) -> tuple[Array, Row]:
         """One of these bars as it bends along its ink, and where it is: over a long one the hand strays further than
