@@ -146,6 +146,14 @@ int is_within_head(const double *samples, const Facts *piece, int32_t name, cons
     return ink_within(samples, name, head, STRAY * (left + right));
 }
 
+/* Whether a stroke comes nearer to a place than `reach` [pixels]. */
+static int comes_near(const double *samples, int32_t name, const double *place, double reach) {
+    const double *p = samples + 2 * SAMPLES * name;
+    for (int i = 0; i < SAMPLES; i++)
+        if (hypot(p[2 * i] - place[0], p[2 * i + 1] - place[1]) < reach) return 1;
+    return 0;
+}
+
 /* Nats to say the ink of an arrow's `count` strokes; infinite where they are more than `worse` above what it takes freely. */
 static double price(const Arrow *arrow, const double *samples, const Facts *facts, const int32_t *names, int count,
                     double worse) {
@@ -161,15 +169,18 @@ static double price(const Arrow *arrow, const double *samples, const Facts *fact
     const double gaps = GAPS * shaft, again = FREE * wrong / (ink[0] + ink[1] + ink[2]) * observations +
                                               misfit(arrow->bare / (gaps * gaps), observations);
     const double said = model + again + arrow->unlike, most = unread + worse;
+    int at_tip = count == 1; /* an X that stands on a line is no head of it */
     for (int k = 0; k < count; k++) {
         const Facts *piece = facts + names[k];
         const int small = piece->extent < SMALL * shaft;
+        at_tip |= k > 0 && comes_near(samples, names[k], arrow->head, piece->extent);
         /* an arrow whose ends meet is no loop, nor a barb that was drawn forth and back */
         const double scale = count == 1 ? SHAFT * shaft : small ? piece->extent / 2 : piece->scale;
         const double cost = misfit_of(piece, arrow->off[k], scale), freely = HEAD * piece->observations;
         if (said + off + (small ? fmin(cost, freely) : cost) > most) return INFINITY;
         off += cost > freely && small && is_within_head(samples, piece, names[k], arrow->head) ? freely : cost;
     }
+    if (!at_tip) return INFINITY;
     const double cost = model + off + again + arrow->unlike;
     return cost > most ? INFINITY : cost;
 }

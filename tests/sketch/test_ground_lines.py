@@ -58,6 +58,17 @@ def test_an_x_on_a_line_is_no_letter_beside_another(seed: int) -> None:
     assert [body.anchored for body in scene.bodies] == [True, False]
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_a_careless_x_near_the_end_of_a_line_is_no_head_of_an_arrow(seed: int) -> None:
+    """It begins further from the line's end than it is large."""
+    rng = np.random.default_rng(seed)
+    stroke = [(-27, -24), (1, 10), (25, 25), (14, 4), (8, -17), (10, -31), (-6, 3), (-27, 25)]
+    x = line([(190 + u, 650 + v) for u, v in stroke], HAND, rng)
+    crate = outline(box(700, 600, 110, 90), HAND, rng)
+    scene = read(line([(60, 650), (1220, 650)], HAND, rng), x, crate, fall(rng)).scene
+    assert [body.anchored for body in scene.bodies] == [True, False]
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_wedge_whose_ends_cross_on_a_line_is_no_large_x(seed: int) -> None:
     rng = np.random.default_rng(seed)
