@@ -22,7 +22,7 @@ import numpy as np
 
 from sim.scene import InputError, Scene
 from sketch.around.arrows import pointing
-from sketch.around.context import Context
+from sketch.around.context import Context, held_ends, linked
 from sketch.around.writing import written
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
@@ -35,7 +35,7 @@ from sketch.page.sampling import sampled
 from sketch.patches import Likely, Patch, patches
 from sketch.reading import Reading, Rival, scored
 from sketch.scoring import Fitted
-from sketch.search import best, part
+from sketch.search import Part, best, part
 from sketch.shapes.cutting import things_in
 from sketch.shapes.letters import Letter, Letters
 from sketch.shapes.placing import Placed, placed
@@ -244,13 +244,16 @@ class Recognizer:
         written_there: list[list[Letter]] = [[] for _ in ways]
         for letter in letters:
             written_there[of[letter.proposed.ink[0]]].append(letter)
-        picked: list[list[int]] = [[] for _ in every]
-        for own, there in zip(ways, written_there, strict=True):
-            sure = (letter.proposed.alone for letter in there if not letter.marks)
-            for q, k in kept.through(best, *(every[n].whole.alone for n in own), *sure):
-                if q < len(own):
-                    picked[own[q]].append(k)
-        likely = [kept(Likely, patch, tuple(ks)) for patch, ks in zip(every, picked, strict=True)]
+        sure = [[letter.proposed.alone for letter in there if not letter.marks] for there in written_there]
+        parts = [patch.whole.alone for patch in every]
+        likely = [kept(Likely, *its) for its in zip(every, _picked(kept, ways, parts, sure), strict=True)]
+        held: dict[int, list[tuple[int, int]]] = {}
+        for n, k, ends in held_ends(likely):
+            held.setdefault(n, []).append((k, ends))
+        if held:  # rods among what else looks like an outline, which else would tell of itself
+            for n, lines in held.items():
+                parts[n] = kept(linked, every[n], tuple(lines))
+            likely = [kept(Likely, *its) for its in zip(every, _picked(kept, ways, parts, sure), strict=True)]
         wholes = [patch.whole for patch in every]
         told = self._context.told(likely, page.size, page.drawn)
         told, elsewhere, pointers = pointing(page, likely, told, count, kept)
@@ -290,6 +293,21 @@ class Recognizer:
                 )
             )
         return readings
+
+
+def _picked(
+    kept: Kept, ways: list[list[int]], parts: list[Part], sure: list[list[Part]]
+) -> list[tuple[int, ...]]:
+    """Which of each patch explain its ink best, each ink in one.
+
+    ways: of each patch what it may be.  parts: of each of those.  sure: letters that may be there.
+    """
+    picked: list[list[int]] = [[] for _ in parts]
+    for own, there in zip(ways, sure, strict=True):
+        for q, k in kept.through(best, *(parts[n] for n in own), *there):
+            if q < len(own):
+                picked[own[q]].append(k)
+    return [tuple(ks) for ks in picked]
 
 
 def _settled(kept: Kept, page: Page, *ways: tuple[Proposed, tuple[float, ...]]) -> _Settled:

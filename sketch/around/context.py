@@ -4,7 +4,6 @@ equal."""
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from itertools import accumulate, chain, islice
 
@@ -14,12 +13,13 @@ from sketch.around.pins import PINNED, REACH, is_over, stands_on
 from sketch.around.writing import LARGEST, WITHIN, WRITTEN
 from sketch.kernel import beside, depth, gap
 from sketch.kernel import held as ends_held
-from sketch.patches import Likely
+from sketch.patches import Likely, Patch
 from sketch.scoring import Fitted
+from sketch.search import Part, part
 from sketch.shapes.proposals import Pick, Proposed, Row
 from sketch.typing import Array, Point
 
-__all__ = ["Context"]
+__all__ = ["Context", "held_ends", "linked"]
 
 Around = dict[Fitted, Row]  # bodies and marks, each with where it is
 Gaps = dict[tuple[Fitted, Fitted], tuple[float, Point]]  # of open lines: how wide [pixels], and where
@@ -70,7 +70,8 @@ class Context:
         bodies = dict(body for own in likely for body in own.bodies)
         courses = {line: (course, row) for own in likely for line, course, row in own.lines}
         held: dict[Fitted, int] = {}
-        for p, k, count in _held(likely):
+        for n, k, count in held_ends(likely):
+            p = likely[n].patch.whole
             line = p.candidates[k]
             held[line] = count
             if p.gains[k] > 0:  # rods, though their ink may go around with others
@@ -99,19 +100,44 @@ class Context:
         return out
 
 
-def _held(likely: Sequence[Likely]) -> Iterator[tuple[Proposed, int, int]]:
-    """The open lines that are proposed of which rings among the likely bodies hold an end or both: of what a patch
-    proposes which it is, and how many ends."""
+def held_ends(likely: Sequence[Likely]) -> Iterator[tuple[int, int, int]]:
+    """The open lines that are proposed of which rings among the likely bodies hold an end or both: the patch, which of
+    all that is proposed of it, and how many ends."""
     rings = [ring for own in likely for ring in own.rings]
-    leading = [own.patch.whole for own in likely if own.patch.whole.bars] if rings else []
+    leading = [(n, own.patch.whole) for n, own in enumerate(likely) if own.patch.whole.bars] if rings else []
     if not leading:
         return
-    lines = np.concatenate([p.ends for p in leading])
+    lines = np.concatenate([p.ends for _, p in leading])
     counts = ends_held(lines, np.array(rings), REACH, THROUGH_RING, PINNED)
-    first = list(accumulate((len(p.bars) for p in leading), initial=0))
-    for line in np.flatnonzero(counts).tolist():
-        by = bisect_right(first, line) - 1
-        yield leading[by], leading[by].bars[line - first[by]], int(counts[line])
+    first = accumulate((len(p.bars) for _, p in leading), initial=0)
+    for (n, p), begin in zip(leading, first, strict=False):
+        its = counts[begin : begin + len(p.bars)].tolist()
+        if not any(its):
+            continue
+        # of each ink, as a straight line ends aside of one that bends
+        most: dict[tuple[int, ...], int] = {}
+        for k, count in zip(p.bars, its, strict=True):
+            ink = p.candidates[k].pieces
+            most[ink] = max(most.get(ink, 0), count)
+        for k in p.bars:
+            if count := most[p.candidates[k].pieces]:
+                yield n, k, count
+
+
+def linked(patch: Patch, held: tuple[tuple[int, int], ...]) -> Part:
+    """What is proposed of a patch, with what it gains by its ink and by rings alone.
+
+    held: which of it are open lines whose ends rings hold, and how many.
+    """
+    whole = patch.whole
+    gains, ends = list(whole.gains), dict[int, int]()
+    for k, count in held:
+        gains[k] += HELD * count
+        ends[whole.candidates[k].pieces[0]] = count
+    for k, c in enumerate(whole.candidates):
+        if c.closed and len(c.pieces) > 1:
+            gains[k] -= LINKED * sum(ends.get(i, 0) for i in c.pieces)
+    return part([c.pieces for c in whole.candidates], gains)
 
 
 def _walls(likely: Sequence[Likely]) -> Around:
@@ -134,7 +160,12 @@ def _is_on_rim(cross: Fitted, row: Row, outline: Fitted, box: Row) -> bool:
     """Whether an X is drawn on a side of a larger outline, neither in it nor over two.  row, box: where they are."""
     (x, y), (x0, y0, x1, y1, _), extent = cross.middle, box, row[4]
     near = x0 - extent < x < x1 + extent and y0 - extent < y < y1 + extent
-    return near and extent < outline.narrow and abs(depth(x, y, outline.outline)) < ON_RIM * extent
+    return near and _is_on_side(cross, extent, outline)
+
+
+def _is_on_side(cross: Fitted, extent: float, outline: Fitted) -> bool:
+    """Whether the middle of an X of some extent [pixels] is on a side of a larger outline."""
+    return extent < outline.narrow and abs(depth(*cross.middle, outline.outline)) < ON_RIM * extent
 
 
 def _stood_on(whole: Proposed, outline: Fitted, crosses: list[tuple[Fitted, Row]]) -> Around:
@@ -330,9 +361,10 @@ class _Bodies:
         return any(self._stands_on(cross, extent, line, row) for line, row in self.lines)
 
     def ground(self, line: Fitted, row: Row) -> bool:
-        """Whether an X of other ink stands on an open line, and on no closed outline."""
+        """Whether an X of other ink stands on an open line, and in no closed outline: at most on a side."""
         return any(
-            self._stands_on(cross, extent, line, row) and not any(self.under(cross, extent))
+            self._stands_on(cross, extent, line, row)
+            and all(_is_on_side(cross, extent, body) for body in self.under(cross, extent))
             for cross, extent in self.crosses
         )
 

@@ -262,10 +262,12 @@ def _near(ring: Drawn, reach: float, bodies: Bodies) -> list[tuple[float, Drawn]
 
 def _off(d: Drawn, ring: Drawn) -> float:
     """How far a ring's middle is from a body [pixels], negative inside; 0 from an open line that it is over."""
-    depth, line = d.depth(ring.middle), d.line
+    depth = d.depth(ring.middle)
     if d.kind == "bar" and depth > 0:
-        long = float(np.hypot(*np.ptp(line, axis=0)))
-        depth *= not is_on_line(ring.middle, math.sqrt(8) * ring.radius, line, long)
+        long, extent = float(np.hypot(*np.ptp(d.line, axis=0))), math.sqrt(8) * ring.radius
+        # its ink bends, and may end aside of where a straight line does
+        ends = (stroke.points[k : k + 1, :2] for stroke in d.ink for k in (0, len(stroke.points) - 1))
+        depth *= not any(is_on_line(ring.middle, extent, line, long) for line in (d.line, *ends))
     return depth
 
 

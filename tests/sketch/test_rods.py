@@ -6,9 +6,9 @@ import itertools
 
 import numpy as np
 import pytest
-from pages import box, read
+from pages import Array, box, read
 
-from sketch.synthetic import HANDS, arrow, circle, cross, line, outline
+from sketch.synthetic import HANDS, Hand, arrow, circle, cross, curve, line, outline
 
 Point = tuple[float, float]
 SEEDS = range(4)
@@ -80,3 +80,33 @@ def test_a_ring_in_an_anchored_beam_joins_what_hangs_below_it(seed: int, gap: fl
     rod = outline(box(640, top + 120, 30, 240), hand, rng)
     scene = read(beam, rod, circle((640, 160), 9, hand, rng)).scene
     assert [tuple(map(str, joint.bodies)) for joint in scene.joints] == [("b1", "b2")]
+
+
+def leg(top: Point, foot: Point, bow: float, hand: Hand, rng: np.random.Generator) -> list[Array]:
+    """A line that the hand bends to one side and to the other, with a ring at its upper end."""
+    t = np.linspace(0, 1, 40)
+    aside = rng.choice([-bow, bow]) * np.sin(2 * np.pi * t)
+    path = np.stack([top[0] + (foot[0] - top[0]) * t + aside, top[1] + (foot[1] - top[1]) * t], axis=1)
+    return curve(path, hand, rng) + circle(top, 8, HANDS["neat"], rng)
+
+
+@pytest.mark.parametrize(
+    ("name", "pair", "astride", "bow"),
+    [("neat", True, 20, 8), ("neat", False, 75, 14), ("shaky", False, 75, 8)],
+)
+def test_a_beam_on_legs_that_are_lines_is_no_box_with_the_ground(
+    name: str, pair: bool, astride: float, bow: float
+) -> None:
+    """A ring holds each leg; a leg bends by more than the ring is large."""
+    right, hand = 0, HANDS[name]
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        beam, legs = outline(box(640, 130, 800, 46), hand, rng), list[Array]()
+        for x, side in ((280, -1), (280, 1), (1000, -1), (1000, 1)):
+            if pair or (side > 0) == (x > 640):
+                legs += leg((x + 14 * side, 132), (x + astride * side, 668), bow, hand, rng)
+        ground = line([(60, 670), (1220, 672)], hand, rng) + cross((180, 671), 44, hand, rng)
+        scene = read(ground, beam, legs, arrow((110, 170), (110, 300), hand, rng)).scene
+        fixed = [body.anchored for body in scene.bodies]
+        right += fixed == [True, False, *[False] * (4 if pair else 2)] and len(scene.joints) == len(fixed) - 2
+    assert right >= 7, right  # of 8
