@@ -267,10 +267,13 @@ class Proposals:
                 found = fitted(key, partial(_read_chain, page, chain))
             if len(chain) == 2 and _thin(found, THINNEST * page.size):
                 continue  # a line that was drawn twice
-            if _closes(min(found, key=lambda f: f.cost), self._said(tuple(group))):
+            best = min(found, key=lambda f: f.cost)
+            said = self._said(best.pieces)
+            if best.gap < CLOSED and best.cost < PLAIN * said:  # it needs no further ink
                 whole.append((gap, group))
             out += found
-            out += _again(page, found, self.free)
+            if best.cost <= said:
+                out += _again(page, found, best)
         for way, j, ink in () if alone.complete else closing_ink(page, p):
             out += fitted(
                 ((*(i for i, _ in way), j), ("borrowing", *way)), partial(read_borrowing, page, way, j, ink)
@@ -289,8 +292,8 @@ class Proposals:
                 for cross in fitted((names, "cross"), lambda n=names, m=most: _kept(read_cross(page, n, m))):  # type: ignore[misc]
                     out += [cross, *with_strays(page, cross, self._said(cross.pieces))]
             out += self._arrows(p)
-        said = [(c, self._said(c.pieces) - c.cost - MEANT) for c in out]
-        likely = [(c, gain) for c, gain in said if gain > -HOPELESS]
+        every = [(c, self._said(c.pieces) - c.cost - MEANT) for c in out]
+        likely = [(c, gain) for c, gain in every if gain > -HOPELESS]
         return proposing([c for c, _ in likely], [gain for _, gain in likely], looked, fits)
 
     def _said(self, names: tuple[int, ...]) -> float:
@@ -327,11 +330,6 @@ def _rows(fits: Sequence[Fitted]) -> list[Row]:
     return rows
 
 
-def _closes(outline: Fitted, free: float) -> bool:
-    """Whether an outline needs no further ink, given the nats to say its own freely."""
-    return outline.gap < CLOSED and outline.cost < PLAIN * free
-
-
 def _kept(found: Fitted | None) -> list[Fitted]:
     return [] if found is None else [found]
 
@@ -360,11 +358,8 @@ def _read_chain(page: Page, chain: Chain) -> list[Fitted]:
     return out
 
 
-def _again(page: Page, found: list[Fitted], free: dict[int, float]) -> list[Fitted]:
-    """The readings of an outline together with the other pieces that run along it, as drawn once more."""
-    best = min(found, key=lambda f: f.cost)
-    if best.cost > sum(free[i] for i in best.pieces):
-        return []
+def _again(page: Page, found: list[Fitted], best: Fitted) -> list[Fitted]:
+    """The readings of an outline together with the other pieces that run along the best, as drawn once more."""
     costs = page.again(best.outline, ALONG * best.scale, best.pieces, best.scale)
     return [together for f in found for together in f.together(costs)] if costs else []
 
