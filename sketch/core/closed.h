@@ -25,6 +25,7 @@ typedef struct {
     double is_ellipse; /* whether the conic is one that may have been meant: not 0, */
     double middle[2]; /* then its middle, */
     double axes[4]; /* and half axes as columns [pixels] */
+    double missing; /* how much of something round is missing along it */
 } Closed;
 
 #endif

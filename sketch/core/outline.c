@@ -152,12 +152,18 @@ static void fit_rounds(const Runs *r, const Ink *ink, Closed *out) {
     out->circle[2] = scale * sqrt(fmax(conic[4] + conic[2] * conic[2] / 4 + conic[3] * conic[3] / 4, 0));
 }
 
+/* Twice the area that the ink goes around, with its sign. */
+static double enclosed(const Runs *r) {
+    double area = 0;
+    for (int i = 0, j = SAMPLES - 1; i < SAMPLES; j = i++) area += r->x[j] * r->y[i] - r->x[i] * r->y[j];
+    return area;
+}
+
 /* How much of the ink's turning is at the corners of its k-gon: 1 where sides are straight, 0 where it turns evenly. At a
  * corner the ink's directions a few samples before and behind it are compared, so that a rounded one counts as well. */
 static double turning(const Runs *r, const double *corners, int k) {
     const double *x = r->x, *y = r->y;
-    double area = 0, sum = 0, even = 4.0 * k / SAMPLES;
-    for (int i = 0, j = SAMPLES - 1; i < SAMPLES; j = i++) area += x[j] * y[i] - x[i] * y[j];
+    double area = enclosed(r), sum = 0, even = 4.0 * k / SAMPLES;
     for (int q = 0; q < k; q++) {
         double best = INFINITY;
         int at = 0;
@@ -181,6 +187,11 @@ static const double ALIKE = 2; /* independent corners: one hand rounds all of an
 static const double POINT = 0.015; /* how far ink is off a sharp corner all the same */
 static const double BETWEEN = 0.3; /* of a step: how far from a corner the points before and behind it usually are */
 static const double FURTHEST = 0.1; /* of the radius: so far, usually, ink in several strokes is off at most */
+static const double BLUNTER =
+    0.12; /* of the radius: how much further off the ink than the next one corner usually is */
+static const double MIDST = 0.75; /* of a side: its middle part, */
+enum { FEW = 8 }; /* where it has as many samples */
+static const double LEVEL = 0.1; /* sine of the angle between sides that meet nowhere */
 static const double UNDRAWN = 2; /* times a gap: a corner that is as near to both of its ends was not drawn */
 
 /* Squared distance of a place from the closed line through the samples, which are there twice over. */
@@ -197,6 +208,15 @@ INK_WIDE static double nearest_ink2(const Runs *r, double px, double py) {
     return best;
 }
 
+/* Whether a corner was drawn, and is not as near to both sides of a gap. */
+static int is_drawn(const Ink *ink, const double *c) {
+    for (const Lift *l = ink->lifts; l < ink->lifts + ink->lift_count; l++)
+        if (fmax(length(c[0] - l->end[0], c[1] - l->end[1]), length(c[0] - l->begin[0], c[1] - l->begin[1])) <
+            UNDRAWN * l->gap)
+            return 0;
+    return 1;
+}
+
 /* Nats to say how far ink stays off the corners of its k-gon, beyond what is usual: an even one's corner that is rounded by a
  * radius r is r (sec(pi / k) - 1) off. Student's t with four degrees, as writers differ; of something round a polygon's corners
  * are far off.
@@ -205,14 +225,37 @@ static double blunted(const Runs *r, const Ink *ink, const double *corners, int 
     double round = BLUNT * (1 / cos(PI / k) - 1), between = BETWEEN * step * sin(PI / k);
     double seen2 = round * round + between * between, usual2 = seen2 + POINT * POINT + square, off2 = 0;
     for (const double *c = corners; c < corners + 2 * k; c += 2) {
-        double best = nearest_ink2(r, c[0], c[1]);
-        for (const Lift *l = ink->lifts; l < ink->lifts + ink->lift_count; l++)
-            if (fmax(length(c[0] - l->end[0], c[1] - l->end[1]), length(c[0] - l->begin[0], c[1] - l->begin[1])) <
-                UNDRAWN * l->gap)
-                best = usual2;
-        off2 += best / usual2 / k;
+        off2 += (is_drawn(ink, c) ? nearest_ink2(r, c[0], c[1]) / usual2 : 1) / k;
     }
     return round * round / seen2 * ALIKE * 2.5 * log((1 + 0.25 * off2) / 1.25); /* few points say little of corners */
+}
+
+/* Nats for one corner of a polygon that is far blunter than the others: it may be a short side. Each is where the middle parts
+ * of its sides meet, going on as these bow, whatever the ink does at corners; of real triangles it falls off exponentially
+ * how much further off than the next one the bluntest is. */
+static double uneven(const Runs *r, const Ink *ink, const Polygon *p) {
+    double first = 0, second = 0;
+    Line side[SIDES];
+    if (p->bridge >= 0) return 0;
+    for (int q = 0; q < p->k; q++) {
+        const int all = p->cut[q + 1] - p->cut[q], n = all < FEW ? all : (int)(MIDST * all);
+        side[q] = runs_line(p->runs, (p->start + p->cut[q] + (all - n) / 2) % r->n, n, STIFFNESS);
+        const double u = (double)all / n, on = (u * u - 1.0 / 3) * side[q].bow;
+        side[q].x -= on * side[q].dy;
+        side[q].y += on * side[q].dx;
+    }
+    for (int q = 0; q < p->k; q++) {
+        const Line *a = side + (q + p->k - 1) % p->k, *b = side + q;
+        const double sine = a->dx * b->dy - a->dy * b->dx;
+        if (fabs(sine) < LEVEL) continue;
+        const double t = ((b->x - a->x) * b->dy - (b->y - a->y) * b->dx) / sine;
+        const double c[2] = {(a->x + t * a->dx) / p->stretch[0], (a->y + t * a->dy) / p->stretch[1]};
+        if (!is_drawn(ink, c)) continue;
+        const double off = sqrt(nearest_ink2(r, c[0], c[1]));
+        second = fmax(second, fmin(first, off));
+        first = fmax(first, off);
+    }
+    return fmax((first - second) / BLUNTER - 1, 0);
 }
 
 /* Nats to say how far the ink is off its k-gon where it is furthest: hooks are short, but the stem of a letter runs on far
@@ -273,6 +316,23 @@ static void as_ellipse(Closed *out) {
     out->axes[3] = back[2] * m01 + back[3] * m11;
 }
 
+/* How much of something round is missing along it, from where the ink ends to where it goes on, in the frame; there an ellipse is
+ * nearly a circle. Not less than between these; ends that run on beyond each other leave nothing out. */
+static double missing_around(const Runs *r, const Ink *ink, const Closed *fit) {
+    if (!fit->is_ellipse) return fit->gap;
+    const double *to = fit->to, *v = fit->axes, x = fit->middle[0] - fit->mean[0], y = fit->middle[1] - fit->mean[1];
+    const double u = to[0] * x + to[1] * y, w = to[2] * x + to[3] * y;
+    const double radius = sqrt(fabs((v[0] * v[3] - v[1] * v[2]) * (to[0] * to[3] - to[1] * to[2])));
+    const double way = enclosed(r) < 0 ? -1 : 1;
+    double sum = 0;
+    for (const Lift *l = ink->lifts; l < ink->lifts + ink->lift_count; l++) {
+        const double begin = atan2(l->begin[1] - w, l->begin[0] - u), end = atan2(l->end[1] - w, l->end[0] - u);
+        const double angle = way * (begin - end), on = angle - 2 * PI * floor(angle / (2 * PI));
+        sum += fmax(on < PI ? on * radius : 0, l->gap);
+    }
+    return sum;
+}
+
 /* Fit the readings of a closed chain of ink.
  *
  * xy: points [pixels], (n, 2), the parts one after another; part_end: where each part ends.
@@ -312,6 +372,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
     fit_rounds(&r, &ink, out);
     as_ellipse(out);
     ink.round = fmin(out->conic_cost, out->circle_cost);
+    out->missing = missing_around(&r, &ink, out);
 
     Polygon found[SIDES + 1];
     ink.longer = hypot(back[0], back[2]) / hypot(back[1], back[3]);
@@ -326,7 +387,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         polygon_corners(found + k, v);
         if (parts > 1) out->cost[k] += astray(&r, v, k); /* one that runs on in one stroke is read without its ends */
         if (k <= MOST) {
-            out->cost[k] += blunted(&r, &ink, v, k, found[k].square, out->ink / n);
+            out->cost[k] += blunted(&r, &ink, v, k, found[k].square, out->ink / n) + uneven(&r, &ink, found + k);
             out->turned[k] = turning(&r, v, k);
         }
         for (double *c = v; c < v + 2 * k; c += 2) {

@@ -8,6 +8,9 @@ static const double PI = 3.14159265358979323846;
 static const double TREMOR = 0.045; /* spread of ink about what was meant, in the frame: a share of the radius */
 static const double SLOPPY = 0.1;   /* nobody's ink is off by much more than this */
 
+static const double STIFFNESS =
+    0.6; /* (tremor / bow)², while lines are fitted: how much rather a side trembles than bows */
+
 /* Where the pen was lifted on the way around: which sample is the first behind, where the ink ends and goes on, and what is
  * missing of it at least. */
 typedef struct {

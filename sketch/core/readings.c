@@ -31,6 +31,7 @@ static const double FREEFORM =
     29.0; /* nats that an outline of any course, a hill or a cloud, is rarer than a polygon */
 static const double ARC = 7.0; /* nats to say each arc of such an outline: where along it one ends is hardly told */
 static const double WIDE = 0.25; /* of its ink: where more is missing, nobody can say which course it took */
+static const double OPEN = 60; /* nats that something round is rarer of which as much is missing */
 
 typedef struct {
     double cost; /* nats; infinite for none */
@@ -123,7 +124,9 @@ static int least_of(const double *of, int first, int but) {
 }
 
 /* The circle and the ellipse; one hardly longer than wide is a circle too. */
-static void read_round(const Closed *fit, double besides, Readings *out) {
+static void read_round(const Closed *fit, double count, double besides, Readings *out) {
+    const double missing = fit->missing / fit->ink;
+    besides += GAP * count * missing + (missing > WIDE ? OPEN : 0);
     for (int e = 0; e < 3; e++) out->round[e] = fit->circle[e];
     out->circle = (Reading){fit->circle_cost + ROUND + besides, ROUND, 0};
     out->ellipse = (Reading){INFINITY, ROUND + ELLIPSE, 0};
@@ -181,7 +184,7 @@ INK_API void ink_readings(const Closed *fit, const Closed *rounded, double count
     /* what turns beside the corners speaks against few of them, where there are points enough to see it */
     for (int k = 3; k <= SIDES; k++) told[k] = few->said > 0 ? total[k] : total[k] + off[k];
     const int sides = least_of(told, 3, 0), second = least_of(told, 3, sides);
-    read_round(rounded, gaps + (sides < FEWEST ? 0 : evenly) + few->even, out);
+    read_round(rounded, count, besides + (sides < FEWEST ? 0 : evenly) + few->even, out);
     out->sides = sides;
     out->next = second;
     out->ahead = told[second] - told[sides];

@@ -20,7 +20,6 @@ static const double ROUNDED = 0.018; /* usual mean bow, times the root of the nu
 static const double SLANT = 0.08;
 static const double SLANTED = 0.12; /* the square of this is usual beyond that */
 static const double BESIDE = 0.125; /* of a side, from either corner: there ink turns from one side to the other */
-static const double STIFFNESS = 0.6; /* (tremor / bow)², while splitting: how much rather a side trembles than bows */
 static const double FLAT = 0.8; /* a corner that turns by less [rad] may be a bow, */
 static const double EVEN = 0.66; /* or less than this share of what it would in an even polygon */
 static const double REFLEX = 1.2; /* likewise one that turns inward */

@@ -45,6 +45,7 @@ _CLOSED = {
     "is_ellipse": 1,
     "middle": 2,
     "axes": 4,
+    "missing": 1,
 }
 _ENDS = dict(zip(_CLOSED, accumulate(_CLOSED.values()), strict=True))
 _PLACES = {

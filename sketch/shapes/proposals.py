@@ -35,8 +35,9 @@ __all__ = ["HOPELESS", "Pick", "Proposals", "Proposed", "Row", "proposing"]
 
 PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as nothing else
 APART = 0.2  # of its length: a stroke whose ends are further apart is no outline by itself
-COMPLETE = 0.1  # of its ink: what is missing, at most, of an outline that needs no other ink
-CLOSED = 0.04  # of its ink: what is missing, at most, of an outline that is complete if it is not narrow
+CLOSED = 0.04  # of its ink: what is missing, at most, of an outline that needs no other ink
+NEARLY = 0.1  # likewise, of one that needs none but what closes it
+TIGHTER = 0.5  # of what is missing of it: what is missing, at most, once it is closed
 NARROW = 0.2  # of its extent: the shorter half axis of an outline that is narrow
 WELL_SAID = 0.6  # of the nats of its free ink: an outline that is said in less is complete, though narrow
 MEANT = 4.0  # nats that a reading is to save: less would be luck, as so many are tried
@@ -57,11 +58,13 @@ class Alone:
 
     Attributes:
         outlines: its readings as a closed outline; none where it is wide open.
+        gapes: what is missing of it, as a share of its ink, where it needs no others but to close it; else infinite.
         complete: whether it closes by itself, and so needs no others.
         plain: whether it looks like nothing else.
     """
 
     outlines: list[Fitted]
+    gapes: float
     complete: bool
     plain: bool
 
@@ -236,12 +239,18 @@ class Proposals:
 
     def _read_alone(self, p: Piece) -> Alone:
         if p.gap >= APART * p.length:
-            return Alone([], False, False)
+            return Alone([], math.inf, False, False)
         outlines = read_outline(self.page, [(p.index, False)])
         best = min(outlines, key=lambda f: f.cost)
         loop = best.gap < CLOSED and best.narrow > NARROW * p.extent
-        complete = best.gap < COMPLETE and (loop or best.cost < WELL_SAID * p.unread)
-        return Alone(outlines, complete, complete and best.cost < PLAIN * p.unread)
+        nearly = best.gap < NEARLY and (loop or best.cost < WELL_SAID * p.unread)
+        complete = nearly and best.gap < CLOSED
+        return Alone(
+            outlines,
+            p.gap / p.length if nearly else math.inf,
+            complete,
+            nearly and best.cost < PLAIN * p.unread,
+        )
 
     def _propose(self, p: Piece, known: Fits) -> Proposed:
         """Every reading of every group that a piece leads."""
@@ -260,6 +269,8 @@ class Proposals:
             group = frozenset(i for i, _ in chain)
             if any(closed < group and tight + WIDE < gap for tight, closed in whole):
                 continue
+            if len(chain) > 1 and gap > TIGHTER * min(self._alone[i].gapes for i in group):
+                continue
             if len(chain) == 1 and alone.outlines:
                 found = alone.outlines
             else:
@@ -274,7 +285,7 @@ class Proposals:
             out += found
             if best.cost <= said:
                 out += _again(page, found, best)
-        for way, j, ink in () if alone.complete else closing_ink(page, p):
+        for way, j, ink in () if alone.gapes < math.inf else closing_ink(page, p):
             out += fitted(
                 ((*(i for i, _ in way), j), ("borrowing", *way)), partial(read_borrowing, page, way, j, ink)
             )

@@ -140,3 +140,11 @@ def test_a_stem_that_runs_on_is_no_side() -> None:
             off = max(abs(depth(x, y, outline)) for path in paths for x, y in path)
             beside += off > 200 / 7
     assert beside <= 3, beside  # of 12
+
+
+@pytest.mark.parametrize("width", [110, 120, 140])
+def test_a_bow_that_is_half_open_is_nothing_round(width: float) -> None:
+    """The bow of a P closes with its stem, if at all; an ellipse through it goes as far again beyond."""
+    t = np.linspace(-2, 2, 40)
+    bow = np.stack([500 + width * np.cos(t), 400 + 55 * np.sin(t)], axis=1)
+    assert recognize(page([bow])).scene.bodies == []

@@ -94,6 +94,13 @@ def test_rectangle_trapezoid_parallelogram(hand, rng) -> None:
     assert len(trapezoid.outline) == len(parallelogram.outline) == 4
 
 
+@pytest.mark.parametrize("height", [120, 180, 240])
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.0])
+def test_a_trapezoid_with_a_short_side_is_no_triangle(height: float, angle: float) -> None:
+    corners = turned([(0, 0), (300, 0), (187.5, height), (112.5, height)], angle, (400, 300))
+    assert kinds(read([np.array([*corners, corners[0]])])) == ["4-gon"]
+
+
 @hands
 def test_concave_outlines(hand, rng) -> None:
     angle_iron = [(0, 0), (200, 0), (200, 80), (80, 80), (80, 220), (0, 220)]

@@ -34,6 +34,17 @@ def test_the_last_of_an_outline_in_a_stroke_of_its_own_belongs_to_it(
         assert (reading.kind, reading.strokes) == ("rectangle", (0, 1))
 
 
+@pytest.mark.parametrize("top", [80, 100, 120])
+@pytest.mark.parametrize("height", [160, 260])
+def test_a_short_side_in_a_stroke_of_its_own_closes_an_outline(top: float, height: float) -> None:
+    (a, b), (c, d) = ((500 - top / 2, 300), (500 + top / 2, 300)), ((725, 300 + height), (275, 300 + height))
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        strokes = [*line([a, b], NEAT, rng), *line([b, c, d, a], NEAT, rng)]
+        (reading,) = recognize(page(strokes)).readings
+        assert (len(reading.outline), reading.strokes) == (4, (0, 1))
+
+
 @pytest.mark.parametrize("turn", [0.0, 0.8, 1.57])
 def test_two_floors_in_line_with_a_hole_between_them_are_two(turn: float) -> None:
     c, s = np.cos(turn), np.sin(turn)
