@@ -247,15 +247,13 @@ class Recognizer:
         sure = [[letter.proposed.alone for letter in there if not letter.marks] for there in written_there]
         parts = [patch.whole.alone for patch in every]
         likely = [kept(Likely, *its) for its in zip(every, _picked(kept, ways, parts, sure), strict=True)]
-        held: dict[int, list[tuple[int, int]]] = {}
-        for n, k, ends in held_ends(likely):
-            held.setdefault(n, []).append((k, ends))
+        held = held_ends(likely)
         if held:  # rods among what else looks like an outline, which else would tell of itself
             for n, lines in held.items():
-                parts[n] = kept(linked, every[n], tuple(lines))
+                parts[n] = kept(linked, every[n], lines)
             likely = [kept(Likely, *its) for its in zip(every, _picked(kept, ways, parts, sure), strict=True)]
         wholes = [patch.whole for patch in every]
-        told = self._context.told(likely, page.size, page.drawn)
+        told = self._context.told(likely, held, page.size, page.drawn)
         told, elsewhere, pointers = pointing(page, likely, told, count, kept)
         left = (its for key, its in self._pieces.items() if self._strokes[key].remains)
         remains = frozenset(i for its in left for i in its)

@@ -4,7 +4,7 @@ equal."""
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate, chain, islice
 
 import numpy as np
@@ -60,22 +60,26 @@ class Context:
         self._walls: Around = {}
         self._sizes = (0.0, 0.0)
 
-    def told(self, likely: Sequence[Likely], size: float, drawn: float) -> list[list[float]]:
+    def told(
+        self, likely: Sequence[Likely], held: Mapping[int, tuple[Pick, ...]], size: float, drawn: float
+    ) -> list[list[float]]:
         """The gains of all that is proposed, by patch, given the bodies that the ink by itself makes likely.
 
+        held: as of `held_ends`.
         size: of the page [pixels]; what is small on it may be a letter.  drawn: of what is drawn on it [pixels]; what
         is small in that is no part of it.
         """
         proposed = [p for own in likely for p in own.patch.proposed]
         bodies = dict(body for own in likely for body in own.bodies)
         courses = {line: (course, row) for own in likely for line, course, row in own.lines}
-        held: dict[Fitted, int] = {}
-        for n, k, count in held_ends(likely):
+        ends: dict[Fitted, int] = {}
+        for n, its in held.items():
             p = likely[n].patch.whole
-            line = p.candidates[k]
-            held[line] = count
-            if p.gains[k] > 0:  # rods, though their ink may go around with others
-                courses[line] = p.course(line)
+            for k, count in its:
+                line = p.candidates[k]
+                ends[line] = count
+                if p.gains[k] > 0:  # rods, though their ink may go around with others
+                    courses[line] = p.course(line)
         bodies |= {line: row for line, (_, row) in courses.items()}
         walls = _walls(likely)
         others = {c: self._bodies.get(c) or bodies[c] for c in self._bodies.keys() ^ bodies.keys()}
@@ -85,7 +89,7 @@ class Context:
         kept = set(stay).difference(stay[k] for k, _ in _beside([proposed[k] for k in stay], others))
         anew = [k for k in range(len(proposed)) if k not in kept]
         sides = {i for line in walls for i in line.pieces}
-        near = {k: _Bodies(held, courses, sides) for k in anew}
+        near = {k: _Bodies(ends, courses, sides) for k in anew}
         every = list(bodies.items())
         sorts = [None if c.closed else c.kind for c in bodies]
         for k, b in _beside([proposed[k] for k in anew], bodies):
@@ -100,16 +104,17 @@ class Context:
         return out
 
 
-def held_ends(likely: Sequence[Likely]) -> Iterator[tuple[int, int, int]]:
-    """The open lines that are proposed of which rings among the likely bodies hold an end or both: the patch, which of
-    all that is proposed of it, and how many ends."""
+def held_ends(likely: Sequence[Likely]) -> dict[int, tuple[Pick, ...]]:
+    """Of each patch the open lines of which rings among the likely bodies hold an end or both: which of all that is
+    proposed of it, and how many ends."""
     rings = [ring for own in likely for ring in own.rings]
     leading = [(n, own.patch.whole) for n, own in enumerate(likely) if own.patch.whole.bars] if rings else []
     if not leading:
-        return
+        return {}
     lines = np.concatenate([p.ends for _, p in leading])
     counts = ends_held(lines, np.array(rings), REACH, THROUGH_RING, PINNED)
     first = accumulate((len(p.bars) for _, p in leading), initial=0)
+    held = {}
     for (n, p), begin in zip(leading, first, strict=False):
         its = counts[begin : begin + len(p.bars)].tolist()
         if not any(its):
@@ -119,12 +124,12 @@ def held_ends(likely: Sequence[Likely]) -> Iterator[tuple[int, int, int]]:
         for k, count in zip(p.bars, its, strict=True):
             ink = p.candidates[k].pieces
             most[ink] = max(most.get(ink, 0), count)
-        for k in p.bars:
-            if count := most[p.candidates[k].pieces]:
-                yield n, k, count
+        ends = ((k, most[p.candidates[k].pieces]) for k in p.bars)
+        held[n] = tuple((k, count) for k, count in ends if count)
+    return held
 
 
-def linked(patch: Patch, held: tuple[tuple[int, int], ...]) -> Part:
+def linked(patch: Patch, held: tuple[Pick, ...]) -> Part:
     """What is proposed of a patch, with what it gains by its ink and by rings alone.
 
     held: which of it are open lines whose ends rings hold, and how many.

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sketch.around.arrows import likeliest_arrow, prefer_arrow
-from sketch.around.context import Context
+from sketch.around.context import Context, held_ends
 from sketch.kernel import depth
 from sketch.page.pieces import Page
 from sketch.patches import Likely, Patch
@@ -139,7 +139,8 @@ def _best_together(page: Page, readings: _Readings, together: Together, ahead: A
 def _told(context: Context, page: Page, proposed: Proposed, chosen: list[int]) -> list[float]:
     """The gains of all readings as they stand around those chosen, with one arrow likelier than others."""
     likely = [(0, k) for k in chosen]
-    told = context.told([Likely(Patch((proposed,)), tuple(chosen))], page.size, page.drawn)
+    its = [Likely(Patch((proposed,)), tuple(chosen))]
+    told = context.told(its, held_ends(its), page.size, page.drawn)
     arrows = [(0, k) for k in proposed.arrows]
     first = likeliest_arrow([proposed], told, arrows, likely, lambda pick: told[0][pick[1]])
     if first is not None:
