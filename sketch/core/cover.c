@@ -205,22 +205,22 @@ INK_API int32_t ink_cover(const int32_t *first, const int32_t *of, const uint8_t
     if (!room) return -1;
     double *price = room + 2 * (size_t)count;
     int32_t *tried = (int32_t *)(room + reals);
-    const Cover c = {first,
-                     of,
-                     left,
-                     cost,
-                     free_,
-                     length,
-                     some,
-                     count,
-                     stretches,
-                     room,
-                     room + count,
-                     price,
-                     price + stretches,
-                     price + 2 * (size_t)stretches,
-                     tried + count,
-                     (uint8_t *)(tried + ints)};
+    const Cover c = {.first = first,
+                     .of = of,
+                     .left = left,
+                     .cost = cost,
+                     .free = free_,
+                     .length = length,
+                     .some = some,
+                     .count = count,
+                     .stretches = stretches,
+                     .profit = room,
+                     .rarer = room + count,
+                     .price = price,
+                     .worth = price + stretches,
+                     .slope = price + 2 * (size_t)stretches,
+                     .holders = tried + count,
+                     .open = (uint8_t *)(tried + ints)};
     const int32_t found = cheapest(&c, chosen, begun, tried, most);
     free(room);
     return found;
