@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 __all__ = ["address", "library"]
 
-ABI = 38  # as core/abi.c says
+ABI = 39  # as core/abi.c says
 _first_byte = ctypes.c_char.from_buffer
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 

@@ -2,4 +2,4 @@
  * sketch/library.py. */
 #include "fit.h"
 
-INK_API int32_t ink_abi(void) { return 38; }
+INK_API int32_t ink_abi(void) { return 39; }
