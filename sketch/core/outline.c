@@ -230,13 +230,14 @@ static double blunted(const Runs *r, const Ink *ink, const double *corners, int 
     return round * round / seen2 * ALIKE * 2.5 * log((1 + 0.25 * off2) / 1.25); /* few points say little of corners */
 }
 
-/* Nats for one corner of a polygon that is far blunter than the others: it may be a short side. Each is where the middle parts
+/* Nats for one corner of a triangle that is far blunter than the others: it may be a short side. Each is where the middle parts
  * of its sides meet, going on as these bow, whatever the ink does at corners; of real triangles it falls off exponentially
- * how much further off than the next one the bluntest is. */
+ * how much further off than the next one the bluntest is. Hands that round one corner of a box more than the others are no
+ * rarity: of more sides it says nothing. */
 static double uneven(const Runs *r, const Ink *ink, const Polygon *p) {
     double first = 0, second = 0;
-    Line side[SIDES];
-    if (p->bridge >= 0) return 0;
+    Line side[3];
+    if (p->k > 3 || p->bridge >= 0) return 0;
     for (int q = 0; q < p->k; q++) {
         const int all = p->cut[q + 1] - p->cut[q], n = all < FEW ? all : (int)(MIDST * all);
         side[q] = runs_line(p->runs, (p->start + p->cut[q] + (all - n) / 2) % r->n, n, STIFFNESS);

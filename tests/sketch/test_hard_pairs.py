@@ -107,6 +107,25 @@ def test_concave_outlines(hand, rng) -> None:
     assert kinds(read(outline(turned(angle_iron, 0.4, (300, 300)), hand, rng))) == ["6-gon"]
 
 
+@pytest.mark.parametrize("seed", [433, 691])
+def test_a_box_whose_one_corner_is_cut_round_has_four_sides(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    box = (
+        np.array([(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)])
+        + rng.normal(0, 12, (4, 2))
+        + (500, 300)
+    )
+    t, cut = np.linspace(0, 1, 9)[:, None], rng.uniform(0.3, 0.9)
+    before, after = box[2] + cut * (box[1] - box[2]), box[2] + cut * (box[3] - box[2])
+    corners = [*box[:2], *((1 - t) ** 2 * before + 2 * t * (1 - t) * box[2] + t**2 * after), box[3], box[0]]
+    sides = [
+        a + (b - a) * np.linspace(0, 1, max(2, int(math.dist(a, b) / 4)))[:, None]
+        for a, b in pairwise(corners)
+    ]
+    ink = np.concatenate(sides)
+    assert kinds(read([ink + rng.normal(0, 0.6, ink.shape)])) == ["4-gon"]
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_rounded_corners_add_no_sides(seed: int) -> None:
     from dataclasses import replace
