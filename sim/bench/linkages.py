@@ -64,14 +64,7 @@ def _solve(scene: Scene, times: Array) -> Array:
 
 
 def _linkage(name: str, about: str, scene: Scene, duration: float) -> Case:
-    known: dict[bytes, Array] = {}  # by sample times: a table asks for the same truth many times
-
-    def truth(t: Array) -> Array:
-        if t.tobytes() not in known:
-            known[t.tobytes()] = _solve(scene, t)
-        return known[t.tobytes()]
-
-    return Case(name, f"{about}; DOP853", scene, duration, truth)
+    return Case(name, f"{about}; DOP853", scene, duration, lambda times: _solve(scene, times))
 
 
 def _pivot(a: str | None, b: str, at: tuple[float, float]) -> Joint:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,12 +47,20 @@ class Case:
     scene: Scene
     duration: float
     truth: Callable[[Array], Array]
+    _known: dict[bytes, Array] = field(default_factory=dict, repr=False, compare=False)
+
+    def at(self, times: Array) -> Array:
+        """The truth at sample times, solved for once: it is asked for at many tolerances."""
+        key = times.tobytes()
+        if key not in self._known:
+            self._known[key] = self.truth(times)
+        return self._known[key]
 
 
 def case_error(case: Case, times: Array, positions: Array, angles: Array) -> float:
     """The largest error over samples and bodies [m]: of position, plus radius times that of the angle."""
     moving = [k for k, b in enumerate(case.scene.bodies) if not b.anchored]
-    want = case.truth(times)
+    want = case.at(times)
     reach = np.array([_reach(case.scene.bodies[k]) for k in moving])
     off = np.hypot(positions[:, moving, 0] - want[..., 0], positions[:, moving, 1] - want[..., 1])
     return float(np.max(off + reach * np.abs(angles[:, moving] - want[..., 2])))
