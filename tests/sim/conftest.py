@@ -1,21 +1,30 @@
 import ctypes
+import os
 import subprocess
-import sys
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from core_build import ROOT, build_backend
+from core_build import ROOT, build_backend, find_compiler, objects
 
 
 @pytest.fixture(scope="session")
-def probe(tmp_path_factory):
-    """The core with doors into its parts, compiled for the tests."""
+def core(tmp_path_factory):
+    """The core's objects, compiled once for all tests, by all processes that run them."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "core"
+    folder.mkdir(exist_ok=True)
     backend = build_backend()
-    compiler = backend.find_compiler() or [sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline"]
+    return objects(backend, find_compiler(backend), folder)
+
+
+@pytest.fixture(scope="session")
+def probe(core, tmp_path_factory):
+    """The core with doors into its parts."""
+    backend = build_backend()
     built = tmp_path_factory.mktemp("probe") / ("probe" + backend.SUFFIX)
-    sources = [*sorted((ROOT / "sim" / "core").glob("*.c")), ROOT / "tests" / "sim" / "probe.c"]
-    subprocess.run(backend.compilation(compiler, list(map(str, sources)), built, ("-Werror",)), check=True)
+    sources = [str(ROOT / "tests" / "sim" / "probe.c"), *core]
+    subprocess.run(backend.compilation(find_compiler(backend), sources, built, ("-Werror",)), check=True)
     return ctypes.CDLL(str(built))
 
 
