@@ -124,7 +124,6 @@ Placed = tuple[Array, float]  # vertices and radius of a convex piece
 def _new_depth(scene: Scene, run: Trajectory) -> float:
     """The deepest overlap of two bodies that collide and did not overlap at the start."""
     pieces = [_pieces(b) for b in scene.bodies]
-    reach = np.array([max(float(np.hypot(*v.T).max()) + r for v, r in p) for p in pieces])
     still = np.array([b.anchored for b in scene.bodies])
     index = {b.id: i for i, b in enumerate(scene.bodies)}
     joined = {frozenset(index[n] for n in j.bodies if n is not None) for j in scene.joints}
@@ -132,16 +131,15 @@ def _new_depth(scene: Scene, run: Trajectory) -> float:
     worst = 0.0
     for f in np.unique(np.linspace(0, len(run) - 1, min(LOOKS, len(run))).astype(int)):
         p, a = run.positions[f], run.angles[f]
-        near = np.hypot(*np.moveaxis(p[:, None] - p[None], 2, 0)) < reach[:, None] + reach[None]
-        near &= ~(still[:, None] & still[None])
+        lies = [[(_turn(v, a[i]) + p[i], r) for v, r in its] for i, its in enumerate(pieces)]
+        low = np.array([np.min([v.min(axis=0) - r for v, r in its], axis=0) for its in lies])
+        high = np.array([np.max([v.max(axis=0) + r for v, r in its], axis=0) for its in lies])
+        under = (low[:, None] < high).all(axis=2)
+        near = under & under.T & ~(still[:, None] & still)  # others are apart
         for i, j in zip(*np.nonzero(np.triu(near, 1)), strict=True):
             if (i, j) in skip or frozenset((int(i), int(j))) in joined:
                 continue
-            depth = max(
-                overlap((_turn(u, a[i]) + p[i], r), (_turn(v, a[j]) + p[j], s))
-                for u, r in pieces[i]
-                for v, s in pieces[j]
-            )
+            depth = max(overlap(one, other) for one in lies[i] for other in lies[j])
             if f == 0 and depth > 1e-6:
                 skip.add((int(i), int(j)))
             else:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sim import Circle, Scene, simulate
-from tests.sim.test_random_scenes import depth, placed
+from tests.sim.test_random_scenes import close_by, depth, placed
 
 WALLS = {"floor": ((8, 0.3), (0, -0.15)), "lid": ((8, 0.3), (0, 6.15))} | {
     "left": ((0.3, 6), (-3.85, 3)),
@@ -78,26 +78,20 @@ def deepest_pair(scene: Scene, run: Any) -> tuple[float, str]:
     """
     joined = {frozenset(joint.bodies) for joint in scene.joints}
     convex = [k for k, body in enumerate(scene.bodies) if is_convex(body)]
-    reach = [
-        b.shape.radius
-        if isinstance(b.shape, Circle)
-        else float(np.hypot(*np.transpose(b.shape.vertices)).max())
-        for b in scene.bodies
-    ]
     worst, who = -math.inf, ""
     before: dict[tuple[int, int], float] = {}
     for t in range(0, len(run.times), 4):
-        at = run.positions[t]
+        lies = [placed(scene.bodies[k], run.positions[t, k], run.angles[t, k]) for k in convex]
         now: dict[tuple[int, int], float] = {}
-        for n, i in enumerate(convex):
-            for j in convex[:n]:
-                a, b = scene.bodies[i], scene.bodies[j]
-                if i < 4 or math.dist(at[i], at[j]) > reach[i] + reach[j] or {a.id, b.id} in joined:
-                    continue
-                now[i, j] = depth(placed(a, at[i], run.angles[t, i]), placed(b, at[j], run.angles[t, j]))
-                found = min(now[i, j], before.get((i, j), -math.inf))
-                if found > worst:
-                    worst, who = found, f"{a.id} and {b.id} at {run.times[t]:.2f}"
+        for m, n in close_by(lies):
+            i, j = convex[n], convex[m]
+            a, b = scene.bodies[i], scene.bodies[j]
+            if i < 4 or {a.id, b.id} in joined:
+                continue
+            now[i, j] = depth(lies[n], lies[m])
+            found = min(now[i, j], before.get((i, j), -math.inf))
+            if found > worst:
+                worst, who = found, f"{a.id} and {b.id} at {run.times[t]:.2f}"
         before = now
     return worst, who
 

@@ -115,6 +115,8 @@ def depth(s, run, f):
     from test_manifold import depth as overlap
     from test_manifold import disk, polygon
 
+    from tests.sim.test_random_scenes import close_by
+
     placed = []
     for k, b in enumerate(s.bodies):
         p, angle = run.positions[f, k], run.angles[f, k]
@@ -122,7 +124,7 @@ def depth(s, run, f):
             disk(*p, b.shape.radius) if hasattr(b.shape, "radius") else polygon(b.shape.vertices, *p, angle)
         )
     worst = 0.0
-    for i, j in np.argwhere(np.triu(np.ones((len(placed), len(placed)), bool), 1)):
+    for i, j in close_by(placed):
         if not (s.bodies[i].anchored and s.bodies[j].anchored):
             worst = max(worst, overlap(placed[i], placed[j]))
     return worst

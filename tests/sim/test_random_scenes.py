@@ -81,15 +81,23 @@ def depth(a: tuple[Array, float], b: tuple[Array, float]) -> float:
     return float(np.min((a[0] @ n.T).max(0) + a[1] - (b[0] @ n.T).min(0) + b[1]))
 
 
+def close_by(parts: list[tuple[Array, float]]) -> list[list[int]]:
+    """Pairs of placed shapes whose boxes overlap, as numbers: no others do."""
+    low = np.array([points.min(axis=0) - radius for points, radius in parts])
+    high = np.array([points.max(axis=0) + radius for points, radius in parts])
+    under = (low[:, None] < high).all(axis=2)
+    found: list[list[int]] = np.argwhere(np.triu(under & under.T, 1)).tolist()
+    return found
+
+
 def deepest(scene: Scene, positions: Array, angles: Array) -> float:
     joined = {frozenset(joint.bodies) for joint in scene.joints}
     worst = -math.inf
     for p, angle in zip(positions, angles, strict=True):
         parts = [placed(body, p[k], angle[k]) for k, body in enumerate(scene.bodies)]
-        for i in range(4, len(parts)):
-            for j in range(i):
-                if frozenset((scene.bodies[i].id, scene.bodies[j].id)) not in joined:
-                    worst = max(worst, depth(parts[i], parts[j]))
+        for j, i in close_by(parts):
+            if i >= 4 and frozenset((scene.bodies[i].id, scene.bodies[j].id)) not in joined:
+                worst = max(worst, depth(parts[i], parts[j]))
     return worst
 
 
