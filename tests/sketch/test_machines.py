@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from functools import cache
 
 import numpy as np
 import pytest
@@ -40,6 +41,12 @@ def test_a_machine_is_read_whole(name: str, sketch: Sketch, bodies: int, joints:
     assert len(drawn) == len(set(drawn)), "no stroke draws two bodies"
 
 
+@cache
+def as_drawn(name: str) -> object:
+    """What one of the machines means."""
+    return next(meaning(recognize(sketch)) for machine, sketch, _, _ in MACHINES if machine == name)
+
+
 def changed(sketch: Sketch, how: str) -> Sketch:
     rng = np.random.default_rng(5)
     strokes = [s.points for s in sketch.strokes]
@@ -68,7 +75,7 @@ def test_the_reading_does_not_depend_on(how: str) -> None:
     for name, sketch, _, _ in MACHINES:
         if "quick" in name:
             continue  # a careless long side may be read with four corners or five
-        assert meaning(recognize(changed(sketch, how))) == meaning(recognize(sketch))
+        assert meaning(recognize(changed(sketch, how))) == as_drawn(name)
 
 
 def test_times_are_not_looked_at() -> None:

@@ -37,6 +37,7 @@ PRINT: Color = (45, 42, 42)
 TABLE: Color = (52, 76, 104)
 SKIN: Color = (115, 145, 200)
 NAIL: Color = (128, 150, 205)
+WHITE: Color = (1.0, 1.0, 1.0)  # of a lamp
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ class Paper:
     shade: float = 1.0
     shadow: float = 1.0
     shadow_edge: float = 3.0
-    lamp: Color = (1.0, 1.0, 1.0)
+    lamp: Color = WHITE
     glare: float = 0.0
     tilt: float = 0.0
     turn: float = 0.0
@@ -194,16 +195,20 @@ def photographed(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> tu
     )
     if paper.table:
         inside = cv2.warpPerspective(np.ones(sheet.shape[:2], np.float32), view, size)
-        wood = np.array(TABLE, np.float32) + 9 * grain((size[1], size[0]), 6, rng)[..., None]
-        picture = picture * inside[..., None] + wood * (1 - inside[..., None])
+        wood = _coloured(TABLE, 9 * grain((size[1], size[0]), 6, rng))
+        picture *= _bgr(inside)
+        picture += wood * _bgr(1 - inside)
     picture = _lit(picture, paper, rng)
     if paper.fingers:
         _hold(picture, paper, view, sheet.shape[1::-1], rng)
-    picture *= np.array(paper.lamp, np.float32)
+    if paper.lamp != WHITE:
+        picture *= np.array(paper.lamp, np.float32)
     if paper.blur:
-        picture = cv2.GaussianBlur(picture, (0, 0), paper.blur)
+        cv2.GaussianBlur(picture, (0, 0), paper.blur, picture)
     if paper.noise:
-        picture += paper.noise * rng.standard_normal(picture.shape, np.float32)
+        noise = rng.standard_normal(picture.shape, np.float32)
+        noise *= paper.noise
+        picture += noise
     picture += 0.5
     pixels = np.clip(picture, 0, 255, out=picture).astype(np.uint8)
     if paper.quality:
@@ -266,6 +271,16 @@ def _lowered(drawing: Drawing, printed: Print) -> Drawing:
     return _carried(drawing, down, (drawing.width, drawing.height + printed.above + printed.below))
 
 
+def _bgr(grey: Array) -> Array:
+    """The same in every channel: a row of three at a time, numpy takes many times as long."""
+    return cv2.merge([np.asarray(grey, np.float32)] * 3)
+
+
+def _coloured(color: Color, more: Array) -> Array:
+    """A colour, with so much more in every channel."""
+    return cv2.merge([np.float32(channel) + more for channel in color])
+
+
 # ---------------------------------------------------------------- the sheet and its ink
 
 
@@ -278,13 +293,12 @@ def _sheet(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
             replace(drawing, strokes=drawing.strokes[1::2]), replace(paper, pen=1.2 * paper.pen), rng
         )
     shape = ink.shape
-    sheet = np.broadcast_to(np.array(paper.sheet, np.float32), (*shape, 3)).copy()
-    sheet += paper.texture * grain(shape, 1.5, rng)[..., None]
+    sheet = _coloured(paper.sheet, paper.texture * grain(shape, 1.5, rng))
     _rule(sheet, paper, rng)
     if paper.printed is not None:
-        sheet = _under(sheet, typed(paper.printed, shape, paper.scale, rng), PRINT, paper)
+        _put(typed(paper.printed, shape, paper.scale, rng), PRINT, sheet, paper)
     if paper.behind:
-        sheet *= 1 - paper.behind * cv2.GaussianBlur(ink[:, ::-1], (0, 0), 2.0)[..., None]
+        sheet *= _bgr(1 - paper.behind * cv2.GaussianBlur(ink[:, ::-1], (0, 0), 2.0))
     for _ in range(paper.coffee):
         stain(sheet, rng)
     for _ in range(paper.smudges):
@@ -296,16 +310,17 @@ def _sheet(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
         cv2.circle(sheet, at, round(rng.uniform(1, 2.5)), (70, 70, 70), cv2.FILLED, cv2.LINE_AA)
     if paper.grain:
         ink = ink * np.clip(1 - paper.grain * (0.5 + grain(shape, 0.8, rng)), 0, 1)
-    sheet = _under(sheet, ink, paper.color, paper)
+    _put(ink, paper.color, sheet, paper)
     if second is not None and paper.second is not None:
-        sheet = _under(sheet, second, paper.second, paper)
+        _put(second, paper.second, sheet, paper)
     punch(sheet, paper.punched)
     return sheet
 
 
-def _under(sheet: Array, ink: Array, color: Color, paper: Paper) -> Array:
-    cover = paper.cover * ink[..., None]
-    return np.asarray(sheet * (1 - cover) + np.array(color, np.float32) * cover)
+def _put(ink: Array, color: Color, sheet: Array, paper: Paper) -> None:
+    there = ink > 0  # on little of it: the rest is as it was
+    cover = paper.cover * ink[there][:, None]
+    sheet[there] = sheet[there] * (1 - cover) + np.array(color, np.float32) * cover
 
 
 def _ink(drawing: Drawing, paper: Paper, rng: np.random.Generator) -> Array:
@@ -425,7 +440,7 @@ def _lit(picture: Array, paper: Paper, rng: np.random.Generator) -> Array:
         b = rng.uniform(0, 2 * math.pi)
         off = (u * math.cos(b) + v * math.sin(b) + rng.uniform(-0.15, 0.15)) * width
         light *= paper.shadow + (1 - paper.shadow) / (1 + np.exp(-np.clip(off / paper.shadow_edge, -40, 40)))
-    picture = picture * light[..., None]
+    picture *= _bgr(light)
     if paper.glare:
         at, wide = rng.uniform(-0.3, 0.3, 2), rng.uniform(0.06, 0.1)
         picture = (

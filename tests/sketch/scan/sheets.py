@@ -51,7 +51,8 @@ def drawn(
     """Ink of a colour on paper of a colour (BGR), or on a picture of paper."""
     page = np.broadcast_to(np.asarray(paper, float), (*ink.shape, 3))
     image = page * (1 - ink[..., None]) + np.asarray(pen, float) * ink[..., None]
-    image = image + np.random.default_rng(seed).normal(0, noise, image.shape)
+    if noise:
+        image += np.random.default_rng(seed).normal(0, noise, image.shape)
     return np.clip(np.round(image), 0, 255).astype(np.uint8)
 
 

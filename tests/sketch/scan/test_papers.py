@@ -42,24 +42,24 @@ def show_through(page: np.ndarray) -> np.ndarray:
 
 
 PAPERS = {
-    "flat colours": drawn(ink()),
-    "noise": drawn(ink(), noise=9),
-    "uneven light": lit(drawn(ink(), noise=4), 0.45 + 0.5 * ACROSS * DOWN),
-    "shadow with an edge": lit(drawn(ink(), noise=3), shadow_with_an_edge()),
-    "lamp light": drawn(ink(), paper=(95, 175, 225), pen=(40, 35, 30), noise=3),
-    "ruled": drawn(ink(), paper=ruled(34, False), noise=3),
-    "squared": drawn(ink(), paper=ruled(28, True), pen=(140, 60, 30), noise=3),
-    "coffee": drawn(ink(), paper=coffee(), noise=3),
-    "folded": lit(drawn(ink(), noise=3), folded()),
-    "show-through": drawn(ink(), paper=show_through(np.full((HEIGHT, WIDTH, 3), 240.0)), noise=2),
-    "pencil": drawn(ink(pen=3), paper=(235, 235, 235), pen=(165, 165, 165), noise=3),
-    "ballpoint": drawn(ink(pen=2.2), pen=(150, 70, 40), noise=3),
-    "marker": drawn(ink(pen=10), pen=(40, 40, 200), noise=3),
-    "red": drawn(ink(), pen=(60, 50, 220), noise=3),
-    "green": drawn(ink(), pen=(80, 170, 60), noise=3),
-    "orange": drawn(ink(), pen=(40, 140, 250), noise=3),
-    "blackboard": drawn(ink(), paper=(52, 60, 45), pen=(225, 230, 228), noise=5),
-    "whiteboard with glare": drawn(
+    "flat colours": lambda: drawn(ink()),
+    "noise": lambda: drawn(ink(), noise=9),
+    "uneven light": lambda: lit(drawn(ink(), noise=4), 0.45 + 0.5 * ACROSS * DOWN),
+    "shadow with an edge": lambda: lit(drawn(ink(), noise=3), shadow_with_an_edge()),
+    "lamp light": lambda: drawn(ink(), paper=(95, 175, 225), pen=(40, 35, 30), noise=3),
+    "ruled": lambda: drawn(ink(), paper=ruled(34, False), noise=3),
+    "squared": lambda: drawn(ink(), paper=ruled(28, True), pen=(140, 60, 30), noise=3),
+    "coffee": lambda: drawn(ink(), paper=coffee(), noise=3),
+    "folded": lambda: lit(drawn(ink(), noise=3), folded()),
+    "show-through": lambda: drawn(ink(), paper=show_through(np.full((HEIGHT, WIDTH, 3), 240.0)), noise=2),
+    "pencil": lambda: drawn(ink(pen=3), paper=(235, 235, 235), pen=(165, 165, 165), noise=3),
+    "ballpoint": lambda: drawn(ink(pen=2.2), pen=(150, 70, 40), noise=3),
+    "marker": lambda: drawn(ink(pen=10), pen=(40, 40, 200), noise=3),
+    "red": lambda: drawn(ink(), pen=(60, 50, 220), noise=3),
+    "green": lambda: drawn(ink(), pen=(80, 170, 60), noise=3),
+    "orange": lambda: drawn(ink(), pen=(40, 140, 250), noise=3),
+    "blackboard": lambda: drawn(ink(), paper=(52, 60, 45), pen=(225, 230, 228), noise=5),
+    "whiteboard with glare": lambda: drawn(
         ink(pen=6),
         paper=np.minimum(190 + 120 * np.exp(-(((ACROSS - 0.7) / 0.1) ** 2 + ((DOWN - 0.3) / 0.2) ** 2)), 255)[
             ..., None
@@ -67,7 +67,7 @@ PAPERS = {
         pen=(150, 60, 30),
         noise=3,
     ),
-    "blurred": cv2.GaussianBlur(drawn(ink(), noise=4), (0, 0), 1.6),
+    "blurred": lambda: cv2.GaussianBlur(drawn(ink(), noise=4), (0, 0), 1.6),
 }
 
 
@@ -75,7 +75,7 @@ PAPERS = {
 def test_the_drawing_is_the_same_on_every_paper(name: str) -> None:
     # a wide pen rounds the corners that it draws
     assert_all(
-        read_picture(encoded(PAPERS[name])), 2.2 if name in ("marker", "whiteboard with glare") else 1.5
+        read_picture(encoded(PAPERS[name]())), 2.2 if name in ("marker", "whiteboard with glare") else 1.5
     )
 
 
@@ -93,7 +93,7 @@ def test_lines_that_the_grain_breaks_are_whole() -> None:
 
 @pytest.mark.parametrize("scale", [0.6, 2, 3.5])
 def test_a_larger_picture_gives_a_larger_drawing(scale: float) -> None:
-    large = cv2.resize(PAPERS["noise"], None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
+    large = cv2.resize(PAPERS["noise"](), None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
     sketch = read_picture(encoded(large, ".jpg"))
     assert sketch.width == large.shape[1]
     for stroke in sketch.strokes:
@@ -377,11 +377,11 @@ def test_error_diffused_grey_is_paper(paper: int) -> None:
 def test_too_many_lines_are_said_to_be_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tracing, "MOST_LINES", 5)
     with pytest.raises(InputError, match=r"nothing was read: [0-9]+ lines are too many"):
-        read_picture(encoded(PAPERS["noise"]))
+        read_picture(encoded(PAPERS["noise"]()))
 
 
 def test_fingers_that_hold_the_sheet_and_specks_are_no_ink() -> None:
-    picture = cv2.copyMakeBorder(PAPERS["noise"], 40, 40, 40, 40, cv2.BORDER_CONSTANT, value=(40, 45, 50))
+    picture = cv2.copyMakeBorder(PAPERS["noise"](), 40, 40, 40, 40, cv2.BORDER_CONSTANT, value=(40, 45, 50))
     for x in (420, 480):
         cv2.ellipse(picture, (x, 30), (22, 50), 0, 0, 360, (70, 95, 150), cv2.FILLED, cv2.LINE_AA)
     for x, y in ((650, 500), (90, 480), (400, 200)):

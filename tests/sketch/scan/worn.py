@@ -46,5 +46,7 @@ def fold(sheet: Array, rng: np.random.Generator) -> None:
 
 def grain(shape: tuple[int, ...], size: float, rng: np.random.Generator) -> Array:
     """Smooth noise of variance 1, about `size` pixels coarse."""
-    noise = cv2.GaussianBlur(rng.standard_normal(shape[:2], np.float32), (0, 0), size)
-    return np.asarray(noise / max(float(noise.std()), 1e-9))
+    noise = rng.standard_normal(shape[:2], np.float32)
+    cv2.GaussianBlur(noise, (0, 0), size, noise)
+    noise /= max(float(noise.std()), 1e-9)
+    return noise
