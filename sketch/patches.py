@@ -85,13 +85,13 @@ class Likely:
 
     @lazy
     def rings(self) -> list[tuple[float, float, float]]:
-        """Middle and extent of each closed outline [pixels]."""
-        return [(*c.middle, row[4]) for c, row in self.closed]
+        """Middle and extent of each circle [pixels]."""
+        return [(*c.middle, row[4]) for c, row in self.closed if c.kind == "circle"]
 
     @lazy
     def pins(self) -> list[Point]:
         """The middles of the circles [pixels]."""
-        return [c.middle for c, _ in self.closed if c.kind == "circle"]
+        return [(x, y) for x, y, _ in self.rings]
 
     @lazy
     def bars(self) -> list[tuple[Fitted, Row, tuple[int, ...]]]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate, chain, islice
+from typing import NamedTuple
 
 import numpy as np
 
@@ -46,8 +47,20 @@ DOT = 0.012  # of what is drawn: nobody draws a smaller body
 DOT_SPREAD = 0.1  # of the logarithm of a size, below that
 # of a ring's extent: a line so near to its middle goes into it; the sides of a box that is as wide run along its rim
 THROUGH_RING = 0.3
-HELD = 12.5  # nats that an open line is likelier a rod for each of its ends that a small ring holds
-LINKED = 5.0  # nats that an outline is rarer for each such end among its strokes
+# nats that an open line is likelier a rod for each of its ends that a small ring holds, and an outline of it rarer, if
+# that is no rod itself, with the ring between its sides
+HELD = 12.5
+
+
+class Ends(NamedTuple):
+    """How many ends of an open line rings hold, and the extent of the largest of these [pixels]."""
+
+    many: int
+    wide: float
+
+
+NOT_HELD = Ends(0, 0.0)
+Held = tuple[int, Ends]  # which of what is proposed is such a line, and its ends
 
 
 class Context:
@@ -61,7 +74,7 @@ class Context:
         self._sizes = (0.0, 0.0)
 
     def told(
-        self, likely: Sequence[Likely], held: Mapping[int, tuple[Pick, ...]], size: float, drawn: float
+        self, likely: Sequence[Likely], held: Mapping[int, tuple[Held, ...]], size: float, drawn: float
     ) -> list[list[float]]:
         """The gains of all that is proposed, by patch, given the bodies that the ink by itself makes likely.
 
@@ -72,12 +85,12 @@ class Context:
         proposed = [p for own in likely for p in own.patch.proposed]
         bodies = dict(body for own in likely for body in own.bodies)
         courses = {line: (course, row) for own in likely for line, course, row in own.lines}
-        ends: dict[Fitted, int] = {}
+        ends: dict[Fitted, Ends] = {}
         for n, its in held.items():
             p = likely[n].patch.whole
-            for k, count in its:
+            for k, of_line in its:
                 line = p.candidates[k]
-                ends[line] = count
+                ends[line] = of_line
                 if p.gains[k] > 0:  # rods, though their ink may go around with others
                     courses[line] = p.course(line)
         bodies |= {line: row for line, (_, row) in courses.items()}
@@ -104,9 +117,8 @@ class Context:
         return out
 
 
-def held_ends(likely: Sequence[Likely]) -> dict[int, tuple[Pick, ...]]:
-    """Of each patch the open lines of which rings among the likely bodies hold an end or both: which of all that is
-    proposed of it, and how many ends."""
+def held_ends(likely: Sequence[Likely]) -> dict[int, tuple[Held, ...]]:
+    """Of each patch the open lines of which rings among the likely bodies hold an end or both."""
     rings = [ring for own in likely for ring in own.rings]
     leading = [(n, own.patch.whole) for n, own in enumerate(likely) if own.patch.whole.bars] if rings else []
     if not leading:
@@ -120,29 +132,35 @@ def held_ends(likely: Sequence[Likely]) -> dict[int, tuple[Pick, ...]]:
         if not any(its):
             continue
         # of each ink, as a straight line ends aside of one that bends
-        most: dict[tuple[int, ...], int] = {}
-        for k, count in zip(p.bars, its, strict=True):
+        most: dict[tuple[int, ...], Ends] = {}
+        for k, count, line in zip(p.bars, its, p.ends.tolist(), strict=True):
             ink = p.candidates[k].pieces
-            most[ink] = max(most.get(ink, 0), count)
-        ends = ((k, most[p.candidates[k].pieces]) for k in p.bars)
-        held[n] = tuple((k, count) for k, count in ends if count)
+            if count > most.get(ink, NOT_HELD).many:
+                by = (wide for *at, wide in rings if min(math.dist(at, end) for end in line) < REACH * wide)
+                most[ink] = Ends(count, max(by))
+        ends = ((k, most.get(p.candidates[k].pieces)) for k in p.bars)
+        held[n] = tuple((k, its) for k, its in ends if its)
     return held
 
 
-def linked(patch: Patch, held: tuple[Pick, ...]) -> Part:
-    """What is proposed of a patch, with what it gains by its ink and by rings alone.
-
-    held: which of it are open lines whose ends rings hold, and how many.
-    """
+def linked(patch: Patch, held: tuple[Held, ...]) -> Part:
+    """What is proposed of a patch, with what it gains by its ink and by rings alone."""
     whole = patch.whole
-    gains, ends = list(whole.gains), dict[int, int]()
-    for k, count in held:
-        gains[k] += HELD * count
-        ends[whole.candidates[k].pieces[0]] = count
+    gains, ends = list(whole.gains), dict[int, Ends]()
+    for k, its in held:
+        gains[k] += HELD * its.many
+        ends[whole.candidates[k].pieces[0]] = its
     for k, c in enumerate(whole.candidates):
-        if c.closed and len(c.pieces) > 1:
-            gains[k] -= LINKED * sum(ends.get(i, 0) for i in c.pieces)
+        gains[k] -= HELD * _corners(c, ends)
     return part([c.pieces for c in whole.candidates], gains)
+
+
+def _corners(outline: Fitted, ends: Mapping[int, Ends]) -> int:
+    """How many ends of lines that are strokes of an outline rings hold, but for rings between its sides: those are as
+    large as it is narrow."""
+    if not outline.closed or len(outline.pieces) == 1:
+        return 0
+    return sum(its.many for i in outline.pieces if (its := ends.get(i, NOT_HELD)).wide < outline.narrow)
 
 
 def _walls(likely: Sequence[Likely]) -> Around:
@@ -201,11 +219,11 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
         if c.closed and extent < DOT * drawn:  # where the pen rested
             gains[k] -= 0.5 * (math.log(DOT * drawn / max(extent, 1e-9)) / DOT_SPREAD) ** 2
         if c.kind == "bar":
-            gains[k] += HELD * bodies.held.get(c, 0)
+            gains[k] += HELD * bodies.held.get(c, NOT_HELD).many
             gains[k] += NO_BODY * (not bodies.walls.isdisjoint(c.pieces))
         elif c.closed and len(c.pieces) > 1:
             gains[k] -= NO_BODY * max(len(bodies.walls.intersection(c.pieces)) - 1, 0)
-            gains[k] -= LINKED * sum(bodies.held_of.get(i, 0) for i in c.pieces)
+            gains[k] -= HELD * _corners(c, bodies.held_of)
         if len(c.pieces) > 1 and extent < LARGEST * drawn:
             if c.kind == "cross":
                 gains[k] -= WITHIN * (c.rough > SCRAWLED)
@@ -282,14 +300,14 @@ class _Bodies:
     """The likely bodies, and the marks on them, to be asked which of them are at a place."""
 
     def __init__(
-        self, held: dict[Fitted, int], courses: dict[Fitted, tuple[Array, Row]], walls: set[int]
+        self, held: dict[Fitted, Ends], courses: dict[Fitted, tuple[Array, Row]], walls: set[int]
     ) -> None:
-        """held: of open lines, how many of their ends small rings hold.  courses: of likely ones, as of `Proposed`.
+        """held: open lines whose ends small rings hold.  courses: of likely ones, as of `Proposed`.
         walls: pieces of outlines on which an X each stands, where there are several."""
         self.held, self.walls = held, walls
         self._courses = courses
         # likewise of the ink that each is most of; on a picture a line that others cross may be most of none
-        self.held_of: dict[int, int] = {}
+        self.held_of: dict[int, Ends] = {}
         self.closed: list[tuple[Fitted, Row]] = []
         self.lines: list[tuple[Fitted, Row]] = []
         self.crosses: list[tuple[Fitted, float]] = []
@@ -303,7 +321,7 @@ class _Bodies:
         else:
             self.lines.append((c, row))
             if c.pieces:
-                self.held_of[c.pieces[0]] = self.held.get(c, 0)
+                self.held_of[c.pieces[0]] = self.held.get(c, NOT_HELD)
 
     def under(self, mark: Fitted, extent: float, least: float = 0.0) -> Iterator[Fitted]:
         """The bodies, of extents of more than `least`, that a mark is over; where any will do, the others are not

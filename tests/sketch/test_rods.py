@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 import pytest
-from pages import Array, box, read
+from pages import Array, box, ngon, read
 
 from sketch.synthetic import HANDS, Hand, arrow, circle, cross, curve, line, outline
 
@@ -110,3 +110,26 @@ def test_a_beam_on_legs_that_are_lines_is_no_box_with_the_ground(
         fixed = [body.anchored for body in scene.bodies]
         right += fixed == [True, False, *[False] * (4 if pair else 2)] and len(scene.joints) == len(fixed) - 2
     assert right >= 7, right  # of 8
+
+
+@pytest.mark.parametrize("name", ["neat", "shaky"])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_three_lines_with_a_ring_where_each_two_meet_are_rods(name: str, seed: int) -> None:
+    """And a triangle of three strokes without rings, or with one ring at a corner, is a body."""
+    hand, rng = HANDS[name], np.random.default_rng(seed)
+    corners = [(640.0, 130.0), (400.0, 400.0), (880.0, 405.0)]
+    sides = [line(list(pair), hand, rng) for pair in itertools.combinations(corners, 2)]
+    rings = [circle(corner, 9, HANDS["neat"], rng) for corner in corners]
+    assert [r.kind for r in read(*sides, *rings).readings] == ["bar"] * 3 + ["pivot"] * 3
+    for some in ([], rings[:1]):
+        assert len(read(*sides, *some).readings[0].strokes) == 3
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_beam_of_two_strokes_between_two_weights_is_no_pair_of_rods(seed: int) -> None:
+    """Each stroke is a long side and a short one, and ends in a weight: that is no ring which holds it."""
+    hand, rng = HANDS["neat"], np.random.default_rng(seed)
+    upper = line([(300, 333), (300, 300), (860, 300)], hand, rng)
+    lower = line([(300, 333), (860, 333), (860, 300)], hand, rng)
+    weights = [outline(ngon(5, x, 318, 60), hand, rng) for x in (285, 875)]
+    assert next(body.strokes for body in read(upper, lower, *weights).scene.bodies) == [0, 1]
