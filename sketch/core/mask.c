@@ -54,7 +54,7 @@ INK_API void ink_crests(const uint8_t *darkness, const uint8_t *mask, int32_t wi
 typedef struct {
     const uint8_t *mask, *line;
     int32_t offset[8];
-    int32_t *label; /* of the stretches of ink that lie beside lines, those that were looked at: from 1 */
+    int32_t *label; /* beside lines: of the stretches of ink there, those that were looked at, from 1, else 0 */
     int32_t *queue, count;
 } Beside;
 
@@ -67,20 +67,27 @@ static int is_beside(const Beside *b, int32_t at) {
 
 /* The stretch of ink beside lines that a pixel is in; 0 where it is in none. */
 static int32_t stretch_at(Beside *b, int32_t at) {
-    if (b->label[at] || !is_beside(b, at)) return b->label[at];
+    if (!is_beside(b, at)) return 0;
+    if (b->label[at]) return b->label[at];
     int32_t listed = 0;
     b->queue[listed++] = at;
     b->label[at] = ++b->count;
     for (int32_t next = 0; next < listed; next++) {
         for (int k = 0; k < 8; k++) {
             const int32_t q = b->queue[next] + b->offset[k];
-            if (!b->label[q] && is_beside(b, q)) {
+            if (is_beside(b, q) && !b->label[q]) {
                 b->label[q] = b->count;
                 b->queue[listed++] = q;
             }
         }
     }
     return b->count;
+}
+
+/* Take it that no ink beside some pixels of lines was looked at. */
+static void forget(Beside *b, const int32_t *pixels, int32_t count) {
+    for (int32_t i = 0; i < count; i++)
+        for (int k = 0; k < 8; k++) b->label[pixels[i] + b->offset[k]] = 0;
 }
 
 /* Whether a piece of a line, `count` pixels, lies between two stretches of ink. */
@@ -118,12 +125,13 @@ INK_API int32_t ink_link(const uint8_t *line, int32_t width, int32_t height, int
     Beside b = {mask, line, {-width, -width + 1, 1, width + 1, width, width - 1, -1, -width - 1}, NULL, NULL, 0};
     int32_t status = -1, dropped = 0;
     int32_t *pixels = malloc(((size_t)size + 1) * 3 * sizeof *pixels);
-    b.label = calloc((size_t)width * height, sizeof *b.label); /* hardly any page of it is touched */
+    b.label = malloc((size_t)width * height * sizeof *b.label); /* to clear it all takes longer than all else */
     b.queue = malloc(((size_t)size * 8 + 1) * sizeof *b.queue);
     if (!pixels || !b.label || !b.queue) goto out;
     int32_t *start = pixels + size, *gone = start + size + 1;
     const int32_t found = ink_pieces(line, width, height, pixels, start);
     if (found < 0) goto out;
+    forget(&b, pixels, start[found]);
     for (int32_t n = 0; n < found; n++) {
         const int32_t *piece = pixels + start[n], count = start[n + 1] - start[n];
         if (is_short(piece, count, width, longest) && !links(&b, piece, count)) gone[dropped++] = n;

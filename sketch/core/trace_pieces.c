@@ -15,10 +15,12 @@ INK_API int32_t ink_pieces(const uint8_t *mask, int32_t width, int32_t height, i
     int32_t pieces = 0, listed = 0;
     start[0] = 0;
     if (width < 3 || height < 3) return 0;
-    uint8_t *left = calloc((size_t)width * height + 1, 1);
+    uint8_t *left = malloc((size_t)width * height);
     if (!left) return -1;
-    for (int32_t y = 1; y < height - 1; y++)
-        memcpy(left + (size_t)y * width + 1, mask + (size_t)y * width + 1, (size_t)width - 2);
+    memcpy(left, mask, (size_t)width * height);
+    memset(left, 0, (size_t)width);
+    memset(left + (size_t)(height - 1) * width, 0, (size_t)width);
+    for (int32_t y = 1; y < height - 1; y++) left[(size_t)y * width] = left[(size_t)(y + 1) * width - 1] = 0;
     for (int32_t y = 1; y < height - 1; y++) {
         const uint8_t *row = left + (size_t)y * width;
         for (int32_t x = next_ink(row, 1, width - 1); x < width - 1; x = next_ink(row, x + 1, width - 1)) {

@@ -68,6 +68,10 @@ class Alone:
     complete: bool
     plain: bool
 
+    def of(self, index: int) -> Alone:
+        """The same of another piece, whose ink goes the same way."""
+        return replace(self, outlines=[replace(f, pieces=(index,)) for f in self.outlines])
+
 
 @dataclass(eq=False)
 class Proposed:
@@ -209,9 +213,12 @@ class Proposals:
             for key in [k for k, found in fits.items() if not again.isdisjoint(k[0]) or _thin(found, thin)]:
                 del fits[key]
                 self._stale.add(i)
+        first: dict[bytes, int] = {}  # a picture's strokes may share their ways, and differ in their ink
         for i in sorted(again.union(new)):
-            self.free[i] = self.page.pieces[i].unread
-            self._alone[i] = self._read_alone(self.page.pieces[i])
+            p = self.page.pieces[i]
+            self.free[i] = p.unread
+            k = first.setdefault(p.points.tobytes(), i) if p.given is None else i
+            self._alone[i] = self._read_alone(p) if k == i else self._alone[k].of(i)
         for i in sorted(again.union(new)):
             ends = set() if self._alone[i].complete else self.page.ends.loosen(i)
             self._touch(i, ends)

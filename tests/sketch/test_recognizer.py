@@ -13,6 +13,11 @@ from pages import box, cart, ngon, pendulum, stack
 
 from sim.scene import InputError
 from sketch import Recognizer, Sketch, Stroke, recognize
+from sketch.page.loose import Chain
+from sketch.page.pieces import Page
+from sketch.scoring import Fitted
+from sketch.shapes.outlines import read_outline
+from sketch.shapes.proposals import Proposals
 from sketch.synthetic import HANDS, arrow, circle, cross, line, outline, scribble
 
 
@@ -178,3 +183,26 @@ def test_a_stroke_whose_size_vanishes_is_left_out_and_named(size: float) -> None
         scene = recognize(Sketch(strokes)).scene
         assert len(scene.bodies) == len(strokes) - 1
         assert any("stroke 0" in note for note in scene.notes)
+
+
+def test_strokes_that_go_the_same_way_are_read_once_and_gain_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A picture's ink may be said by many strokes of one course, of which at most one is true."""
+    read = list[int]()
+
+    def counted(page: Page, chain: Chain) -> list[Fitted]:
+        read.append(chain[0][0])
+        return read_outline(page, chain)
+
+    monkeypatch.setattr("sketch.shapes.proposals.read_outline", counted)
+    rings = [
+        circle((300.0, 300.0), 80.0, HANDS["neat"], np.random.default_rng(seed))[0] for seed in (1, 1, 2)
+    ]
+    found = Proposals(800.0, [{1, 2}, {0, 2}, {0, 1}])
+    found.add(rings)
+    once, again, other = found.all()
+    assert read == [0, 2]
+    assert once.gains == again.gains != other.gains
+    assert {c.pieces for c in once.candidates} == {(0,)}
+    assert {c.pieces for c in again.candidates} == {(1,)}
