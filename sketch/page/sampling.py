@@ -11,7 +11,7 @@ import numpy as np
 
 from sketch.typing import Array
 
-__all__ = ["Sampled", "arced", "sampled", "unevenness"]
+__all__ = ["FEW", "Sampled", "arced", "sampled", "unevenness"]
 
 ENOUGH = 4000  # points of a stroke: more say nothing further about its course
 FEW = 24  # points of a stroke: in more a corner that lies between two of them is hardly cut

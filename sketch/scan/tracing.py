@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sketch.ink import Stroke
+from sketch.page.sampling import FEW as SAMPLES
 from sketch.scan.binding import Chains, smoothed
 from sketch.scan.looking import Seen, look
 from sketch.scan.skeleton.corners import begin_at_corner, sharpen_corners
@@ -35,6 +36,7 @@ __all__ = ["Traced", "trace_picture"]
 
 MOST_LINES = 4000  # between junctions: drawings of hundreds of things have as many, fine print has more
 SMOOTHING = 0.8  # [points]: standard deviation of the smoothing along a stroke
+SPACING = 0.333  # pen widths between the points of a stroke: ink shows nothing of its course that is finer
 CERTAIN = -5.0  # [rad²]: a ring with less strain is not looked at as anything else
 FEW = 4  # lines: an X with a loop has three, what a ring joins has more
 
@@ -147,12 +149,20 @@ def _in_tangles(tangles: list[Graph], known: list[Way], pen: float) -> list[Way]
 
 
 def _drawn(way: Way, seen: Seen) -> Way:
-    """A way as it is handed on: begun at a corner, smooth, in the picture's pixels."""
-    points = smooth(begin_at_corner(way.points, seen.pen), SMOOTHING)
+    """A way as it is handed on: begun at a corner, smooth, in points as far apart as the pen can tell, in the picture's
+    pixels."""
+    points = _spaced(smooth(begin_at_corner(way.points, seen.pen), SMOOTHING), SPACING * seen.pen)
     ink = way.ink
     if seen.scale != 1:
         ink = {name: (stretch + 0.5) * seen.scale - 0.5 for name, stretch in ink.items()}
     return Way((points + 0.5) * seen.scale - 0.5, ink, way.strain)
+
+
+def _spaced(points: Points, apart: float) -> Points:
+    """Of points a pixel apart those about `apart`, with both ends; more, where that would leave no more than are taken
+    for the samples of a tablet that cut corners."""
+    step = min(round(apart), (len(points) - 1) // SAMPLES)
+    return points if step < 2 else np.concatenate([points[:-1:step], points[-1:]])
 
 
 def _drawn_as(ways: list[Way], *, remains: bool = False) -> list[Stroke]:

@@ -189,3 +189,16 @@ def test_a_foot_under_a_plank_stands_on_the_ground_s_line(pen: float) -> None:
     scene = read([ground, foot, plank, circle(259, 206, 9)], pen)
     assert kinds(scene) == ["3 sides", "rectangle", "rectangle"]
     assert len(scene.joints) == 1
+
+
+@pytest.mark.parametrize("pen", [6.0, 7.5])
+def test_strokes_have_a_point_for_each_third_of_a_pens_width_and_their_ends(pen: float) -> None:
+    """More would say nothing of the ink; a mark of few points would be taken for samples that cut its corners."""
+    rod, mark = [(60.0, 80.0), (460.0, 80.0), (460.0, 300.0)], [(100.0, 200.0), (140.0, 224.0)]
+    sketch = read_picture(encoded(drawn(inked([rod, mark], pen), noise=1.5)))
+    small, long = sorted((stroke.points for stroke in sketch.strokes), key=lambda p: float(np.ptp(p)))
+    steps = np.hypot(*np.diff(long, axis=0).T)
+    assert pen / 4 < np.median(steps) < pen / 2
+    for corner in rod:
+        assert np.hypot(*(long - np.array(corner)).T).min() < pen / 2
+    assert len(small) > 24
