@@ -136,8 +136,9 @@ def held_ends(likely: Sequence[Likely]) -> dict[int, tuple[Held, ...]]:
         for k, count, line in zip(p.bars, its, p.ends.tolist(), strict=True):
             ink = p.candidates[k].pieces
             if count > most.get(ink, NOT_HELD).many:
+                # of those that hold it; one at its very reach may round to be none here
                 by = (wide for *at, wide in rings if min(math.dist(at, end) for end in line) < REACH * wide)
-                most[ink] = Ends(count, max(by))
+                most[ink] = Ends(count, max(by, default=0.0))
         ends = ((k, most.get(p.candidates[k].pieces)) for k in p.bars)
         held[n] = tuple((k, its) for k, its in ends if its)
     return held
