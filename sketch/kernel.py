@@ -75,7 +75,7 @@ _off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, 
 )
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
 _course = ctypes.CFUNCTYPE(_int, _pointer, _int, _double, _pointer)(("ink_course", _lib))
-_around = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer)(("ink_course_around", _lib))
+_around = ctypes.CFUNCTYPE(_int, _pointer, _int, _int, _pointer, _pointer)(("ink_course_around", _lib))
 _placed = ctypes.CFUNCTYPE(_int, _pointer, _int, _pointer, _pointer, _int, _int)(("ink_placed", _lib))
 _lend = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, *[_pointer] * 2, _double, _int, _pointer)(
     ("ink_lend", _lib)
@@ -296,12 +296,12 @@ def course(points: Array, pen: float) -> Array | None:
     return line[:count].copy() if count else None
 
 
-def course_around(points: Array) -> Array | None:
-    """Ink that goes once around, (n, 2), as a closed outline of COURSE corners at most, without what runs beyond its
-    closing [pixels]; None where it crosses itself."""
-    outline, scratch = np.empty((COURSE, 2)), np.empty(3 * len(points) + 6)
-    given = np.ascontiguousarray(points)
-    count = _around(address(given), len(given), address(scratch), address(outline))
+def course_around(parts: Sequence[Array]) -> Array | None:
+    """Ink that goes once around, parts of (n, 2), as a closed outline of COURSE corners at most, without what runs
+    beyond its closing or, of several parts, beyond where they cross [pixels]; None where it crosses itself."""
+    given = np.ascontiguousarray(np.concatenate(parts))
+    outline, scratch = np.empty((COURSE, 2)), np.empty(3 * len(given) + 6)
+    count = _around(address(given), len(given), len(parts) > 1, address(scratch), address(outline))
     return outline[:count].copy() if count else None
 
 

@@ -26,6 +26,7 @@ typedef struct {
     double middle[2]; /* then its middle, */
     double axes[4]; /* and half axes as columns [pixels] */
     double missing; /* how much of something round is missing along it */
+    double arced; /* nats to say an outline of sides and arcs, and the ink, given it; infinite for none */
 } Closed;
 
 #endif

@@ -10,6 +10,8 @@ enum {
 }; /* sides that it is drawn with at most, and places along it where it may close */
 static const double CLOSE =
     0.002; /* of its extent: ink that is no further off is followed; so is a circle with 32 sides */
+static const double LOOP =
+    0.1; /* of an outline's length: what two strokes have beyond the corner where they cross is less */
 
 /* The outline of a polyline, (count, 2), drawn with a pen so wide, mitred at its corners: (2 * count, 2). */
 static void thicken(const double *line, int count, double pen, double *outline) {
@@ -110,10 +112,63 @@ static void in_steps(const double *xy, int32_t n, double *along, double *line, i
     }
 }
 
-/* xy: points of ink that goes once around [pixels], (n, 2), n > 1.  scratch: room for 3 n + 6 numbers.
+/* Where sides ab and cd cross, if they do. */
+static int crossing(const double *a, const double *b, const double *c, const double *d, double at[2]) {
+    const double ux = b[0] - a[0], uy = b[1] - a[1], vx = d[0] - c[0], vy = d[1] - c[1];
+    const double wx = c[0] - a[0], wy = c[1] - a[1], sine = ux * vy - uy * vx;
+    if (sine == 0) return 0;
+    const double t = (wx * vy - wy * vx) / sine, u = (wx * uy - wy * ux) / sine;
+    if (t < 0 || t > 1 || u < 0 || u > 1) return 0;
+    at[0] = a[0] + t * ux;
+    at[1] = a[1] + t * uy;
+    return 1;
+}
+
+/* Cut off what strokes that cross at a corner have beyond it: loops of a closed line, (n, 2), the smallest first. Returns how
+ * many corners are left, or 0 where what goes around twice is no such end. */
+static int without_loops(double *line, int n) {
+    for (;;) {
+        double around = 0, least = INFINITY, at[2], there[2] = {0, 0}, upto[COURSE];
+        int first = 0, last = -1, outer = 0;
+        for (int i = 0; i < n; i++) {
+            const double *a = line + 2 * i, *b = line + 2 * ((i + 1) % n);
+            upto[i] = around;
+            around += hypot(b[0] - a[0], b[1] - a[1]);
+        }
+        for (int i = 0; i < n; i++)
+            for (int j = i + 2; j < n; j++) {
+                const double *a = line + 2 * i, *b = a + 2, *c = line + 2 * j, *d = line + 2 * ((j + 1) % n);
+                if ((i == 0 && j == n - 1) || !crossing(a, b, c, d, at)) continue;
+                const double within =
+                    upto[j] + hypot(at[0] - c[0], at[1] - c[1]) - upto[i] - hypot(at[0] - a[0], at[1] - a[1]);
+                const double loop = fmin(within, around - within);
+                if (loop >= least) continue;
+                least = loop;
+                first = i;
+                last = j;
+                outer = within > loop;
+                memcpy(there, at, sizeof at);
+            }
+        if (last < 0) return n;
+        if (least > LOOP * around) return 0;
+        if (outer) { /* what is kept is between the two */
+            memmove(line + 2, line + 2 * (first + 1), 2 * (size_t)(last - first) * sizeof *line);
+            memcpy(line, there, sizeof there);
+            n = last - first + 1;
+        } else {
+            memcpy(line + 2 * (first + 1), there, sizeof there);
+            memmove(line + 2 * (first + 2), line + 2 * (last + 1), 2 * (size_t)(n - last - 1) * sizeof *line);
+            n -= last - first - 1;
+        }
+        if (n < 3) return 0;
+    }
+}
+
+/* xy: points of ink that goes once around [pixels], (n, 2), n > 1, in one stroke or several.  scratch: room for 3 n + 6
+ * numbers.
  * Out: outline: room for (COURSE, 2), closed, without what runs beyond where its ends are nearest to each other. Returns how
  * many corners it has, or 0 where it crosses itself. */
-INK_API int32_t ink_course_around(const double *xy, int32_t n, double *scratch, double *outline) {
+INK_API int32_t ink_course_around(const double *xy, int32_t n, int32_t several, double *scratch, double *outline) {
     double dense[2 * DENSE], line[2 * (COURSE + 1)], least = INFINITY;
     double *along = scratch, *once = scratch + n;
     int first = 0, last = 0, count = 0;
@@ -133,7 +188,8 @@ INK_API int32_t ink_course_around(const double *xy, int32_t n, double *scratch, 
         if (along[i] > begin && along[i] < end) memcpy(once + 2 * ++count, xy + 2 * i, 2 * sizeof *once);
     memcpy(once + 2 * ++count, dense + 2 * last, 2 * sizeof *once);
     memcpy(once + 2 * ++count, once, 2 * sizeof *once); /* and back to where it begins */
-    const int corners = with_few_sides(once, count + 1, COURSE, line) - 1;
+    int corners = with_few_sides(once, count + 1, COURSE, line) - 1;
+    if (several) corners = without_loops(line, corners); /* one that crosses itself is no outline */
     memcpy(outline, line, 2 * (size_t)corners * sizeof *line);
     return corners > 2 && ink_is_simple(outline, corners) ? corners : 0;
 }

@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const double CAP = 0.3; /* distances count up to this share of the radius: hooks and flourishes */
-enum { MOST = 7 }; /* sides of a polygon whose corners are told from something round */
+enum { MOST = 8 }; /* sides of a polygon whose corners are told from something round */
 
 /* The frame: of second moments of the chain taken as a closed curve (the gaps bridged), so that a missing piece moves them
  * little. */
@@ -186,7 +186,8 @@ static const double BLUNT = 0.12; /* usual radius by which a hand rounds corners
 static const double ALIKE = 2; /* independent corners: one hand rounds all of an outline alike */
 static const double POINT = 0.015; /* how far ink is off a sharp corner all the same */
 static const double BETWEEN = 0.3; /* of a step: how far from a corner the points before and behind it usually are */
-static const double FURTHEST = 0.1; /* of the radius: so far, usually, ink in several strokes is off at most */
+static const double FURTHEST =
+    0.1; /* of the radius: so far, usually, ink in several strokes and its polygon are apart at most */
 static const double BLUNTER =
     0.12; /* of the radius: how much further off the ink than the next one corner usually is */
 static const double MIDST = 0.75; /* of a side: its middle part, */
@@ -259,10 +260,13 @@ static double uneven(const Runs *r, const Ink *ink, const Polygon *p) {
     return fmax((first - second) / BLUNTER - 1, 0);
 }
 
-/* Nats to say how far the ink is off its k-gon where it is furthest: hooks are short, but the stem of a letter runs on far
- * beyond what is closed of it, however well the rest goes along sides. */
-INK_WIDE static double astray(const Runs *r, const double *corners, int k) {
+/* Nats to say how far the ink and its k-gon are apart where they are furthest: hooks are short, but the stem of a letter runs
+ * on far beyond what is closed of it, however well the rest goes along sides, and sides that meet far beyond the ink were
+ * round. */
+INK_WIDE static double astray(const Runs *r, const Ink *ink, const double *corners, int k) {
     double off2[SAMPLES], most = 0;
+    for (const double *c = corners; c < corners + 2 * k; c += 2)
+        if (is_drawn(ink, c)) most = fmax(most, nearest_ink2(r, c[0], c[1]));
     for (int i = 0; i < SAMPLES; i++) off2[i] = INFINITY;
     for (int q = 0; q < k; q++) {
         const double *a = corners + 2 * q, *b = corners + 2 * ((q + 1) % k);
@@ -377,7 +381,7 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
 
     Polygon found[SIDES + 1];
     ink.longer = hypot(back[0], back[2]) / hypot(back[1], back[3]);
-    best_polygons(&ink, &r, &longer, ink.longer > LONG ? sqrt(sqrt(ink.longer)) : 1, found);
+    best_polygons(&ink, &r, &longer, ink.longer > LONG ? sqrt(sqrt(ink.longer)) : 1, found, &out->arced);
     for (int k = 0; k <= SIDES; k++) {
         double *v = out->vertices[k], cost = found[k].cost - found[k].undrawn;
         out->cost[k] = cost;
@@ -386,7 +390,8 @@ INK_API void ink_closed(const double *xy, const int32_t *part_end, int parts, do
         out->turned[k] = 0;
         if (!isfinite(cost)) continue;
         polygon_corners(found + k, v);
-        if (parts > 1) out->cost[k] += astray(&r, v, k); /* one that runs on in one stroke is read without its ends */
+        if (parts > 1)
+            out->cost[k] += astray(&r, &ink, v, k); /* one that runs on in one stroke is read without its ends */
         if (k <= MOST) {
             out->cost[k] += blunted(&r, &ink, v, k, found[k].square, out->ink / n) + uneven(&r, &ink, found + k);
             out->turned[k] = turning(&r, v, k);

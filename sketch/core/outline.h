@@ -47,6 +47,7 @@ typedef struct {
     Line side[SIDES];
     double cost, square; /* nats to say the ink, given it, and the mean squared distance */
     double undrawn; /* of those, for what of it nobody drew */
+    double arced; /* likewise of both, if sides that bow far were meant to; infinite where none does */
 } Polygon;
 
 /* Nats to say the ink's distances from an outline: Student's t for the tremor, unknown but about TREMOR, and a normal prior
@@ -61,8 +62,9 @@ static inline double retraced(const Ink *ink, double perimeter) {
 }
 
 /* The best polygons of 3 .. SIDES sides over samples in their frame; of cost infinite where there is none. They keep
- * `square` and `longer`, which hold the samples as they are and, where `stretch` is not 1, drawn longer. */
-void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon best[SIDES + 1]);
+ * `square` and `longer`, which hold the samples as they are and, where `stretch` is not 1, drawn longer.
+ * Out: arced: nats to say the best outline of sides and arcs, and the ink, given it; infinite for none. */
+void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon best[SIDES + 1], double *arced);
 
 /* A polygon's corners, (k, 2), in the frame. */
 void polygon_corners(const Polygon *p, double *corners);

@@ -6,7 +6,8 @@
 
 enum {
     FEWEST = 5, /* sides of polygons that are nearly round */
-    MOST = 7, /* sides of polygons beside whose corners something round turns more; as in core/outline.c */
+    MOST = 8, /* sides of polygons beside whose corners something round turns more; as in core/outline.c */
+    FEWER = 7, /* likewise where its points are few: eight of these may be round as well */
     MANY = 12 /* steps between points around an outline: where there are more, one sees how the ink turns */
 };
 
@@ -104,11 +105,11 @@ static double irregular(const Closed *fit, int k) {
 
 /* Nats to say how much of the ink's turning is at a polygon's corners, of something round (out) and of the polygon. Beside
  * many corners nothing is left to turn.
- * steps: between the points of its line, MANY where there are more: all turning is at these, and as many of them as the
+ * most: sides that it is told of.  steps: between the points of its line, MANY where there are more: all turning is at these, and as many of them as the
  * polygon has corners may be its corners. */
-static double turning(const Closed *fit, int sides, double steps, double *evenly) {
+static double turning(const Closed *fit, int sides, int most, double steps, double *evenly) {
     *evenly = 0;
-    if (sides > MOST || !isfinite(fit->cost[sides])) return 0;
+    if (sides > most || !isfinite(fit->cost[sides])) return 0;
     double off = 1 - fmin(fmax(fit->turned[sides], 0), 1);
     off = fmin(off * (1 - sides / (double)MANY) / (1 - sides / steps), 1 - EVENLY);
     *evenly = 0.5 * square((1 - off - EVENLY) / TURNING);
@@ -143,14 +144,15 @@ static void read_round(const Closed *fit, double count, double besides, Readings
     out->round[2] = sqrt(area);
 }
 
-/* An outline of any course, as far as it is cheaper than those that are known already. */
-static Reading read_any(const Closed *fit, double count, double gaps, const Readings *known) {
+/* An outline of any course, or of sides and arcs, as far as it is cheaper than those that are known already. */
+static Reading read_any(const Closed *fit, double count, double gaps, double besides, const Readings *known) {
     const double model = FREEFORM + 3 * ARC;
     double best = fmin(fmin(known->circle.cost, known->ellipse.cost), fmin(known->polygon.cost, known->rectangle.cost));
     double arcs = INFINITY;
-    if (fit->gap <= WIDE * fit->ink && FREEFORM + gaps + 3 * ARC <= best)
+    if (fit->gap > WIDE * fit->ink) return (Reading){INFINITY, model, 0};
+    if (FREEFORM + gaps + 3 * ARC <= best)
         for (int k = 3; k <= SIDES; k++) arcs = fmin(arcs, misfit(fit->residual[k], count) + ARC * k);
-    const double cost = FREEFORM + gaps + arcs;
+    const double cost = fmin(FREEFORM + gaps + arcs, fit->arced + besides);
     return (Reading){cost < best ? cost : INFINITY, model, 0};
 }
 
@@ -172,15 +174,16 @@ INK_API void ink_readings(const Closed *fit, const Closed *rounded, double count
         total[k] = rough[k] + fit->lacks[k] + own;
     }
     const double least = total[least_of(total, 3, 0)];
-    for (int k = FEWEST; k <= MOST; k++) {
+    const int most = few->said > 0 ? FEWER : MOST;
+    for (int k = FEWEST; k <= most; k++) {
         const double clean = 6 * CORNER + (2 * k - 6) * NEARLY - said(k);
         if (total[k] + clean < least + ALSO) total[k] += fmin(clean + irregular(fit, k), 0);
     }
-    for (int k = 3; k <= MOST; k++) total[k] += few->cornered;
-    const double straight = turning(fit, least_of(total, FEWEST, 0), few->steps, &evenly);
+    for (int k = 3; k <= most; k++) total[k] += few->cornered;
+    const double straight = turning(fit, least_of(total, FEWEST, 0), most, few->steps, &evenly);
     for (int k = 3; k <= SIDES; k++) off[k] = straight;
-    off[3] = few->said > 0 ? 0 : turning(fit, 3, few->steps, &none);
-    off[4] = few->said > 0 ? 0 : turning(fit, 4, few->steps, &none);
+    off[3] = few->said > 0 ? 0 : turning(fit, 3, most, few->steps, &none);
+    off[4] = few->said > 0 ? 0 : turning(fit, 4, most, few->steps, &none);
     /* what turns beside the corners speaks against few of them, where there are points enough to see it */
     for (int k = 3; k <= SIDES; k++) told[k] = few->said > 0 ? total[k] : total[k] + off[k];
     const int sides = least_of(told, 3, 0), second = least_of(told, 3, sides);
@@ -195,5 +198,5 @@ INK_API void ink_readings(const Closed *fit, const Closed *rounded, double count
         out->rectangle.rough = rough[4] + misfit(mean_square + fit->extra, count) - misfit(mean_square, count);
         out->rectangle.cost = out->rectangle.rough + BOX + fit->lacks[4] + besides + few->cornered + off[4];
     }
-    out->any = read_any(fit, count, gaps, out);
+    out->any = read_any(fit, count, gaps, besides, out);
 }

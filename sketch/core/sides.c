@@ -13,6 +13,9 @@
  * outline to the same side they hardly bow: that is no polygon but something round. */
 static const double BOW = 0.0178;
 static const double BENT = 0.05;
+static const double ARC =
+    0.13; /* of its length: a side that bows further, as sixty degrees of a circle do, may be meant to, */
+static const double ARCED = 10; /* and this is what to say that takes [nats]: as much as to bow so far by chance */
 static const double ROUNDED = 0.018; /* usual mean bow, times the root of the number of sides */
 /* Between its corners ink runs the way its side does: the mean squared sine of the angle between them is less than SLANT,
  * whatever the hand, or hardly more; of a long outline times the root of how much longer than wide it is, as the frame
@@ -142,6 +145,36 @@ static void find_headings(Runs *r, const Ink *ink) {
     memcpy(r->along_y + n, r->along_y, n * sizeof *r->along_y);
 }
 
+/* A polygon's side: how far it bows, as a share of its length, and the squared sines between its ink and it, summed up. */
+typedef struct {
+    double share, slanted;
+} Bent;
+
+/* Nats for how a polygon's sides bow, and for how their ink runs; those that bow by more than `arc` are arcs. */
+static double crooked(const Ink *ink, const Polygon *p, const Bent *side, double arc) {
+    int straight = 0;
+    double mean = 0, slanted = 0, odd = 0, bent = 1;
+    for (int q = 0; q < p->k; q++)
+        if (fabs(side[q].share) <= arc) {
+            mean += side[q].share;
+            straight++;
+        }
+    mean /= straight ? straight : 1;
+    for (int q = 0; q < p->k; q++) {
+        if (fabs(side[q].share) > arc) {
+            odd += ARCED;
+            continue;
+        }
+        const double usual = (side[q].share - mean) / BOW, most = side[q].share / BENT;
+        bent *= 1 + 0.25 * usual * usual;
+        odd += 0.5 * most * most;
+        slanted += side[q].slanted;
+    }
+    odd += 0.5 * straight * mean * mean / (ROUNDED * ROUNDED) + 2.5 * log(bent);
+    slanted = slanted / p->runs->n - SLANT * sqrt(ink->longer);
+    return odd + 0.5 * ink->observations * fmax(slanted, 0) / (SLANTED * SLANTED);
+}
+
 /* The polygon's cost, and its mean squared distance. Ink that overshoots a corner lies on its side's line: it pays for the
  * length beyond at a quarter. */
 INK_WIDE static void judge(const Ink *ink, Polygon *p) {
@@ -158,8 +191,9 @@ INK_WIDE static void judge(const Ink *ink, Polygon *p) {
         drawn.side[q].x -= off * p->side[q].dy;
         drawn.side[q].y += off * p->side[q].dx;
     }
-    double at[2 * SIDES], share[SIDES], length_of[SIDES], stretched[SIDES], off[SAMPLES], slant[SAMPLES];
-    double sum = 0, slanted = 0, around = 0, area = 0, bows = 0;
+    double at[2 * SIDES], length_of[SIDES], stretched[SIDES], off[SAMPLES], slant[SAMPLES];
+    double sum = 0, around = 0, area = 0, most = 0, odd = 0;
+    Bent side[SIDES];
     const int even = p->stretch[0] == 1 && p->stretch[1] == 1;
     polygon_corners(&drawn, at);
     for (int q = 0; q < k; q++) {
@@ -168,10 +202,10 @@ INK_WIDE static void judge(const Ink *ink, Polygon *p) {
         length_of[q] = even ? l : length((b[0] - a[0]) / p->stretch[0], (b[1] - a[1]) / p->stretch[1]);
         around += length_of[q];
         area += a[0] * b[1] - a[1] * b[0];
-        share[q] = p->side[q].bow / (l > 1e-9 ? l : 1e-9);
-        bows += share[q] / k;
+        side[q].share = p->side[q].bow / (l > 1e-9 ? l : 1e-9);
+        most = fmax(most, fabs(side[q].share));
     }
-    double odd = 0.5 * k * bows * bows / (ROUNDED * ROUNDED), bent = 1, per_around = 1 / fmax(around, 1e-9);
+    const double per_around = 1 / fmax(around, 1e-9);
     for (int q = 0; q < k; q++) {
         const double *a = at + 2 * q, *b = at + 2 * ((q + 1) % k);
         double dx = b[0] - a[0], dy = b[1] - a[1], l = stretched[q], bow = p->side[q].bow;
@@ -188,18 +222,18 @@ INK_WIDE static void judge(const Ink *ink, Polygon *p) {
             double sine = along_x[i] * uy - along_y[i] * ux;
             slant[i] = t > BESIDE * l && t < (1 - BESIDE) * l ? sine * sine : 0;
         }
-        double usual = (share[q] - bows) / BOW, most = share[q] / BENT;
-        bent *= 1 + 0.25 * usual * usual;
-        odd += 0.5 * most * most +
-               odd_side(at + 2 * ((q + k - 1) % k), a, b, at + 2 * ((q + 2) % k), area, length_of[q] * per_around, k);
+        side[q].slanted = 0;
+        for (int i = p->cut[q]; i < p->cut[q + 1]; i++) side[q].slanted += slant[i];
+        odd += odd_side(at + 2 * ((q + k - 1) % k), a, b, at + 2 * ((q + 2) % k), area, length_of[q] * per_around, k);
     }
-    for (int i = 0; i < r->n; i++) sum += off[i], slanted += slant[i];
+    for (int i = 0; i < r->n; i++) sum += off[i];
     /* The frame makes a straight wall as wide as it is long; one that turns a corner stays thin in it. */
     double thick = fabs(area) * per_around / THICK;
     p->square = sum / (r->n * fmin(thick * thick, 1));
     p->undrawn = undrawn(ink, p, at, length_of);
-    odd += 0.5 * ink->observations * fmax(slanted / r->n - SLANT * sqrt(ink->longer), 0) / (SLANTED * SLANTED);
-    p->cost = misfit(p->square, ink->observations) + odd + 2.5 * log(bent) + retraced(ink, around) + p->undrawn;
+    odd += misfit(p->square, ink->observations) + retraced(ink, around) + p->undrawn;
+    p->cost = odd + crooked(ink, p, side, INFINITY);
+    p->arced = most > ARC ? odd + crooked(ink, p, side, ARC) : INFINITY;
 }
 
 static int is_simple(const Polygon *p) {
@@ -208,13 +242,17 @@ static int is_simple(const Polygon *p) {
     return ink_is_simple(corners, p->k);
 }
 
-/* The cheapest polygons of each number of sides: those that are no outline, as their sides cross, may lead to one that is. */
+/* The cheapest polygons of each number of sides: those that are no outline, as their sides cross, may lead to one that is.
+ * And what the cheapest outline takes that has arcs, its corners too. */
 typedef struct {
     Polygon *simple, any[SIDES + 1];
+    double arced;
 } Found;
 
 /* Take a polygon for the best of its number of sides, if it is. */
-static void take(const Polygon *p, Found *found) {
+static void take(const Ink *ink, const Polygon *p, Found *found) {
+    const double arced = p->arced + p->k * ink->side;
+    if (arced < found->arced && is_simple(p)) found->arced = arced;
     if (p->cost < found->any[p->k].cost - TIE) found->any[p->k] = *p;
     if (p->cost < found->simple[p->k].cost - TIE && is_simple(p)) found->simple[p->k] = *p;
 }
@@ -237,12 +275,12 @@ static void put_bridge(Polygon *p) {
 /* Judge a polygon, and take it; likewise with a side that nobody drew, where that may be cheaper. */
 static void propose(const Ink *ink, Polygon *p, Found *found) {
     judge(ink, p);
-    take(p, found);
+    take(ink, p, found);
     if (p->bridge < 0 && p->k >= CUP && p->k < SIDES && p->saving * ink->undrawn > ink->side) {
         Polygon bridged = *p;
         put_bridge(&bridged);
         judge(ink, &bridged);
-        take(&bridged, found);
+        take(ink, &bridged, found);
     }
 }
 
@@ -360,7 +398,7 @@ static void refine_best(const Ink *ink, Found *found) {
         if (any[k].cost + (k - 1) * ink->side < any[best].cost + best * ink->side) best = k;
     Polygon fewer = any[best];
     refine(ink, &fewer);
-    take(&fewer, found);
+    take(ink, &fewer, found);
     for (int k = best - 1; k >= 3; k--) {
         fewer.cost = INFINITY;
         for (int q = 0; q <= k; q++) {
@@ -371,14 +409,14 @@ static void refine_best(const Ink *ink, Found *found) {
         }
         if (fewer.cost > any[k + 1].cost + ink->side + MENDS) return;
         refine(ink, &fewer);
-        take(&fewer, found);
+        take(ink, &fewer, found);
         if (any[k].cost > any[k + 1].cost + ink->side) return;
     }
 }
 
-void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon best[SIDES + 1]) {
+void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon best[SIDES + 1], double *arced) {
     const double even[2] = {1, 1}, drawn[2] = {stretch, 1 / stretch};
-    Found found = {.simple = best};
+    Found found = {.simple = best, .arced = INFINITY};
     for (int k = 0; k <= SIDES; k++) {
         best[k].cost = found.any[k].cost = INFINITY;
         best[k].undrawn = found.any[k].k = 0;
@@ -395,4 +433,5 @@ void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, P
         split_sides(ink, longer, drawn, &found);
     }
     refine_best(ink, &found);
+    *arced = found.arced;
 }

@@ -46,6 +46,7 @@ _CLOSED = {
     "middle": 2,
     "axes": 4,
     "missing": 1,
+    "arced": 1,
 }
 _ENDS = dict(zip(_CLOSED, accumulate(_CLOSED.values()), strict=True))
 _PLACES = {

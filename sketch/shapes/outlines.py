@@ -17,7 +17,7 @@ from sketch.typing import Array
 
 __all__ = ["LEAST_AXIS", "read_borrowing", "read_outline"]
 
-MOST, MANY = (
+FEWER, MANY = (
     7,
     12,
 )  # as in core/readings.c: polygons of more sides, and ink of more steps, are seen as they are
@@ -119,7 +119,7 @@ def _read(
     if said.cost < math.inf:
         out.append(Fitted("rectangle", names, said.cost, fit.rectangle, said.model, *its, said.rough))
     said = found.free
-    course = course_around(np.concatenate(parts)) if said.cost < math.inf else None
+    course = course_around(parts) if said.cost < math.inf else None
     if course is not None:
         out.append(Fitted("free", names, said.cost, course, said.model, *its))
     return out
@@ -133,7 +133,7 @@ def _few(parts: list[Array], given: list[Array | None]) -> list[Array]:
     came = {(x, y) for points in given if points is not None for x, y in points.tolist()}
     own = [part[[(x, y) in came for x, y in part.tolist()]] for part in parts[: len(given)]] if came else []
     steps = sum(map(len, own)) - len(own)
-    return own if MOST < steps < MANY and all(len(points) > 1 for points in own) else []
+    return own if FEWER < steps < MANY and all(len(points) > 1 for points in own) else []
 
 
 def _stepping(points: list[Array], ellipse: tuple[Array, Array] | None, along: int) -> Few:

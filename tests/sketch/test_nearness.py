@@ -168,13 +168,13 @@ def test_pieces_near_a_place_are_those_whose_boxes_are() -> None:
 def test_a_course_around_ends_where_it_closes() -> None:
     t = np.linspace(-0.2, 2 * math.pi + 0.1, 200)
     spiral = np.stack([np.cos(t), np.sin(t)], axis=1) * (100 + 3 * t[:, None])
-    outline = course_around(spiral)
+    outline = course_around([spiral])
     assert outline is not None
     angles = np.unwrap(np.arctan2(outline[:, 1], outline[:, 0]))
     assert np.all(np.diff(angles) > 0)
     assert angles[-1] - angles[0] < 2 * math.pi < angles[-1] - angles[0] + 0.4
     eight = np.stack([100 * np.sin(t), 50 * np.sin(2 * t)], axis=1)
-    assert course_around(eight) is None
+    assert course_around([eight]) is None
 
 
 def test_a_course_has_its_corners_where_the_ink_turns() -> None:
@@ -186,13 +186,13 @@ def test_a_course_has_its_corners_where_the_ink_turns() -> None:
         [(0, 0), (500, 0), (500, 40), (430, 40), (430, 90), (370, 90), (370, 170), (0, 170)], float
     )
     sides = [p + t[:-1] * (q - p) for p, q in zip(step, np.roll(step, -1, axis=0), strict=True)]
-    np.testing.assert_allclose(course_around(np.concatenate([*sides, step[:1]])), step)
+    np.testing.assert_allclose(course_around([np.concatenate([*sides, step[:1]])]), step)
 
 
 def test_a_course_of_something_round_is_close_to_it_with_few_sides() -> None:
     t = np.linspace(0, 2 * math.pi, 400)
     hills = 100 * (1 + 0.3 * np.cos(5 * t))[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1)
-    outline = course_around(hills)
+    outline = course_around([hills])
     assert outline is not None
     assert len(outline) <= 32
     assert max(abs(depth(x, y, outline)) for x, y in hills.tolist()) < 3
