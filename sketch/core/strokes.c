@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double CLOSING =
+    0.25; /* of the gap without it: what leaves less of one is the side that closes an outline */
 static const double ENOUGH = 0.045; /* of the spread of a stroke: a polyline that is nearer says it well */
 
 enum {
@@ -32,6 +34,13 @@ static int hook_end(const double *p, int first, int step, int n, double reach) {
         if (ax * bx + ay * by < 0.5 * length(ax, ay) * length(bx, by)) best = i;
     }
     return best;
+}
+
+/* Whether a stroke's ends are nearer to each other with what its first a and last b steps add. */
+static int closes(const double *p, int n, int a, int b) {
+    const double *begin = p, *end = p + 2 * (n - 1), *first = p + 2 * a, *last = end - 2 * b;
+    const double gap = length(begin[0] - end[0], begin[1] - end[1]);
+    return gap < CLOSING * length(first[0] - last[0], first[1] - last[1]);
 }
 
 static void moments(const double *p, int n, double *total, double mean[2], double s[3]) {
@@ -131,7 +140,7 @@ INK_API void ink_strokes(const double *xy, const int32_t *ends, int32_t count, d
         if (n >= 5) { /* a thin box's short side is no hook: it is as long as the stroke is thick */
             double reach = fmin(0.05 * m[0], 0.8 * least_spread(spread));
             int a = hook_end(p, 0, 1, n, reach), b = hook_end(p, n - 1, -1, n, reach);
-            if (n - a - b >= 3 && a + b > 0) {
+            if (n - a - b >= 3 && a + b > 0 && !closes(p, n, a, b)) {
                 n -= a + b;
                 memmove(p, p + 2 * a, 2 * n * sizeof *p);
                 moments(p, n, &m[0], mean, spread);

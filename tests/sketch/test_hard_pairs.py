@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -76,8 +77,6 @@ def test_a_hasty_circle_is_a_circle(angle: float) -> None:
 @pytest.mark.parametrize("angle", [0.1, 0.35, 0.6])
 @pytest.mark.parametrize("size", [30, 110, 200])
 def test_a_hexagon_of_rounded_corners_is_no_circle(size: float, angle: float) -> None:
-    from dataclasses import replace
-
     for seed in range(6):
         hand = replace(HANDS["neat"], rounding=0.2, parts=(1,))
         corners = turned(ngon(6, 0, 0, size), angle, (400, 300))
@@ -107,6 +106,16 @@ def test_concave_outlines(hand, rng) -> None:
     assert kinds(read(outline(turned(angle_iron, 0.4, (300, 300)), hand, rng))) == ["6-gon"]
 
 
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("name", ["neat", "shaky"])
+def test_a_short_side_that_closes_an_outline_is_no_hook(seed: int, name: str) -> None:
+    """A trough in one stroke from any corner on: the ends of its walls are a thirtieth of its outline."""
+    v = [(-100, -100), (-60, -100), (-60, 70), (60, 70), (60, -100), (100, -100), (100, 120), (-100, 120)]
+    hand = replace(HANDS[name], parts=(1,), overshoot=0.0)
+    corners = [(400.0 + x, 300.0 + y) for x, y in v]
+    assert kinds(read(outline(corners, hand, np.random.default_rng(seed)))) == ["8-gon"]
+
+
 @pytest.mark.parametrize("seed", [433, 691])
 def test_a_box_whose_one_corner_is_cut_round_has_four_sides(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -128,8 +137,6 @@ def test_a_box_whose_one_corner_is_cut_round_has_four_sides(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_rounded_corners_add_no_sides(seed: int) -> None:
-    from dataclasses import replace
-
     hand = replace(HANDS["neat"], rounding=0.2)
     rng = np.random.default_rng(seed)
     assert kinds(read(outline(box(300, 300, 240, 160), hand, rng))) == ["4-gon"]
@@ -260,8 +267,6 @@ def test_a_long_box_may_lack_its_end_but_no_box_a_side() -> None:
 
 
 def test_hooks_and_overshoots_do_not_move_a_side() -> None:
-    from dataclasses import replace
-
     careful = replace(HANDS["neat"], tremor=0.0, drift=0.0, rounding=0.0, parts=(4,))
     wild = replace(careful, hook=0.04, overshoot=0.05)
     for seed in range(8):
@@ -283,8 +288,6 @@ def test_what_runs_on_within_a_closed_outline_is_no_side(past: float, back: bool
 
 @hands
 def test_bodies_that_share_a_drawn_side(hand, rng) -> None:
-    from dataclasses import replace
-
     first = outline(box(300, 300, 200, 140), hand, rng)
     beside = line([(400, 232), (540, 230), (540, 370), (400, 368)], replace(hand, parts=(1,)), rng)
     bodies = read(first, beside).scene.bodies
