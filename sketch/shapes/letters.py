@@ -26,6 +26,10 @@ NAIL = 0.04  # of what is drawn: the extent of a ring that may be a pin
 # times as large as a ring is a letter that it is a part of, at most, as a "d" is: what is larger is pinned by it
 HOLDS = 2.5
 SURER = 10.0  # nats, at most, that a letter gains beyond an X of its ink: a body under that says more for it
+# nats that an X in two strokes leaves to be said about its ink: 99 in 100 of people's leave less, an "f", a "4" and a
+# crossed "7" more
+PLAIN = 25.0
+EVEN = 0.15  # of the logarithm of its bars' lengths' ratio: how much that differs from 0; a "t" has a short bar
 SHORT = 0.6  # of the bars of an X: what is no longer, and touches them, is a loose side of it
 TOUCHING = 0.12  # of the smaller stroke: what is between the strokes of one letter
 MOST_STROKES = 4  # of one letter
@@ -106,7 +110,7 @@ class Letters:
             return None
         crosses, whole = _crosses(of, group, small) if len(group) > 1 else ([], [])
         gain = _gain(page, group, extent / (USUAL * page.drawn))
-        gain = max([gain, *(min(gain + rough, its + SURER) for its, rough in whole)])
+        gain = max([gain, *(min(gain + rough, its + SURER + odd) for its, rough, odd in whole)])
         if gain <= 0:
             return None
         rings = [
@@ -144,9 +148,9 @@ def _alone(proposed: Proposed, index: int, may_pin: bool) -> tuple[bool, int, li
 
 def _crosses(
     of: Mapping[int, Proposed], group: Sequence[int], small: Mapping[int, float]
-) -> tuple[list[tuple[int, int]], list[tuple[float, float]]]:
+) -> tuple[list[tuple[int, int]], list[tuple[float, float, float]]]:
     """Readings of some pieces as an X that the others are short beside: which piece proposed it, and which it is; and
-    of each X of all pieces what it gains, and what it leaves to be said of its ink [nats].
+    of each X of all pieces what it gains, what it leaves to be said of its ink, and how odd an X it is [nats].
 
     of: what the pieces propose.  small: their extents [pixels].
     """
@@ -156,10 +160,17 @@ def _crosses(
             if gain > 0 and c.kind == "cross" and every.issuperset(c.pieces):
                 rest, least = every.difference(c.pieces), min(small[j] for j in c.pieces)
                 if not rest:
-                    whole.append((gain, c.rough))
+                    whole.append((gain, c.rough, _odd(c)))
                 elif all(small[j] < SHORT * least for j in rest):
                     found.append((i, k))
     return found, whole
+
+
+def _odd(cross: Fitted) -> float:
+    """Nats that an X in two strokes is rarer than what people draw as one."""
+    a, b, c, d = cross.outline.tolist()
+    uneven = math.log(math.dist(a, b) / math.dist(c, d)) / EVEN
+    return max(cross.rough - PLAIN, 0.0) + 0.5 * uneven**2
 
 
 def _as_ring(of: Mapping[int, Proposed], group: tuple[int, ...]) -> tuple[list[tuple[int, int]], bool]:
