@@ -64,7 +64,7 @@ _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 6, _int, *[_pointer] * 2, _double
 _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
     ("ink_beside", _lib)
 )
-_held = ctypes.CFUNCTYPE(None, _pointer, _int, _pointer, _int, *[_double] * 3, _pointer)(("ink_held", _lib))
+_held = ctypes.CFUNCTYPE(None, *[_pointer] * 2, _int, _pointer, _int, *[_double] * 3, *[_pointer] * 2)(("ink_held", _lib))
 _patches = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, _int, *[_pointer] * 2)(("ink_patches", _lib))
 _words = ctypes.CFUNCTYPE(
     ctypes.c_int64, _pointer, _int, *[_pointer] * 3, _double, _double, _pointer, ctypes.c_int64
@@ -261,13 +261,17 @@ def beside(boxes: Array, bodies: Array) -> list[list[int]]:
         room = count
 
 
-def held(lines: Array, rings: Array, in_ring: float, through: float, shorter: float) -> NDArray[np.int32]:
-    """How many ends of each open line, given where these are, (n, 2, 2), rings hold, given their middles and extents,
-    (m, 3) [pixels] (see core/held.c)."""
-    found = np.empty(len(lines), dtype=np.int32)
-    of = address(lines), len(lines), address(rings), len(rings)
-    _held(*of, in_ring, through, shorter, address(found))
-    return found
+def held(
+    lines: Sequence[Array], rings: Array, in_ring: float, through: float, shorter: float
+) -> tuple[list[int], list[float]]:
+    """By how many rings each open line, (n, 2), is held, given their middles and extents, (m, 3), and the extent of the
+    largest of these [pixels] (see core/held.c)."""
+    count = len(lines)
+    first = np.fromiter(accumulate(map(len, lines), initial=0), dtype=np.int32)
+    found, wide = np.empty(count, dtype=np.int32), np.empty(count)
+    of = address(np.concatenate(lines)), address(first), count, address(rings), len(rings)
+    _held(*of, in_ring, through, shorter, address(found), address(wide))
+    return found.tolist(), wide.tolist()
 
 
 def cuts(strokes: Sequence[Array]) -> list[tuple[list[float], list[int]]]:

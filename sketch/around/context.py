@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import accumulate, chain, islice
+from itertools import chain, islice
 from typing import NamedTuple
 
 import numpy as np
@@ -118,29 +118,24 @@ class Context:
 
 
 def held_ends(likely: Sequence[Likely]) -> dict[int, tuple[Held, ...]]:
-    """Of each patch the open lines of which rings among the likely bodies hold an end or both."""
+    """Of each patch the open lines that rings among the likely bodies hold."""
     rings = [ring for own in likely for ring in own.rings]
     leading = [(n, own.patch.whole) for n, own in enumerate(likely) if own.patch.whole.bars] if rings else []
     if not leading:
         return {}
-    lines = np.concatenate([p.ends for _, p in leading])
-    counts = ends_held(lines, np.array(rings), REACH, THROUGH_RING, PINNED)
-    first = accumulate((len(p.bars) for _, p in leading), initial=0)
+    lines = [p.candidates[k].outline for _, p in leading for k in p.bars]
+    ends = map(Ends, *ends_held(lines, np.array(rings), REACH, THROUGH_RING, PINNED))
     held = {}
-    for (n, p), begin in zip(leading, first, strict=False):
-        its = counts[begin : begin + len(p.bars)].tolist()
-        if not any(its):
-            continue
+    for n, p in leading:
+        its = dict(zip(p.bars, ends, strict=False))
         # of each ink, as a straight line ends aside of one that bends
         most: dict[tuple[int, ...], Ends] = {}
-        for k, count, line in zip(p.bars, its, p.ends.tolist(), strict=True):
+        for k, of_line in its.items():
             ink = p.candidates[k].pieces
-            if count > most.get(ink, NOT_HELD).many:
-                # of those that hold it; one at its very reach may round to be none here
-                by = (wide for *at, wide in rings if min(math.dist(at, end) for end in line) < REACH * wide)
-                most[ink] = Ends(count, max(by, default=0.0))
-        ends = ((k, most.get(p.candidates[k].pieces)) for k in p.bars)
-        held[n] = tuple((k, its) for k, its in ends if its)
+            most[ink] = max(most.get(ink, NOT_HELD), of_line)
+        if any(of_line.many for of_line in most.values()):
+            lines_there = ((k, most[p.candidates[k].pieces]) for k in p.bars)
+            held[n] = tuple((k, of_line) for k, of_line in lines_there if of_line.many)
     return held
 
 

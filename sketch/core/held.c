@@ -1,27 +1,70 @@
-/* Which ends of open lines rings hold. */
+/* Which open lines rings hold: by their ends, or where another's end is. */
 #include "fit.h"
 
 #include <math.h>
 
-/* lines: (count, 4): where each begins and ends. rings: (many, 3): middle and extent [pixels]. in_ring: of a ring's extent: an
- * end so near to its middle is in the ring; through: likewise of a line that goes into it; shorter: times, at least, that the
- * line is as long as the ring's extent.
- * Out: held: (count): how many ends of each some ring holds. */
-INK_API void ink_held(const double *lines, int32_t count, const double *rings, int32_t many, double in_ring,
-                      double through, double shorter, int32_t *held) {
+enum { FIRST = 1, LAST = 2 };
+
+static const double ACROSS = 0.3; /* sine of the angle, at least, at which a line ends on another that goes on: 17 degrees */
+
+/* A line: its points, how many, and how long it is from end to end. */
+typedef struct {
+    const double *points;
+    int n;
+    double u, v, length;
+} Course;
+
+static Course course_of(const double *points, const int32_t *from, int n) {
+    Course l = {points + 2 * from[n], from[n + 1] - from[n], 0, 0, 0};
+    l.u = l.points[2 * l.n - 2] - l.points[0];
+    l.v = l.points[2 * l.n - 1] - l.points[1];
+    l.length = hypot(l.u, l.v);
+    return l;
+}
+
+/* Which ends of a line are in a ring; -1 where the ring is too large for it. */
+static int ends_in(const Course *l, const double *r, double reach, double shorter) {
+    if (shorter * r[2] >= l->length) return -1;
+    const double x = r[0] - l->points[0], y = r[1] - l->points[1];
+    const double far_x = x - l->u, far_y = y - l->v;
+    return FIRST * (x * x + y * y < reach * reach) + LAST * (far_x * far_x + far_y * far_y < reach * reach);
+}
+
+/* Whether a line so goes through a ring that one that ends there leads off it. */
+static int passes(const Course *l, const double *r, double reach, const Course *other) {
+    for (int k = 0; k + 1 < l->n; k++) {
+        const double *a = l->points + 2 * k, u = a[2] - a[0], v = a[3] - a[1];
+        if (segment_distance2(r[0], r[1], a, a + 2) < reach * reach &&
+            fabs(u * other->v - v * other->u) > ACROSS * hypot(u, v) * other->length)
+            return 1;
+    }
+    return 0;
+}
+
+/* points: of all lines [pixels]; from: (count + 1): the first of each. rings: (many, 3): middle and extent [pixels].
+ * in_ring: of a ring's extent: an end so near to its middle is in the ring; through: likewise of a line that goes into it, or
+ * through; shorter: times, at least, that the line is as long as the ring's extent.
+ * Out: held: (count): how many ends of each some ring holds, and in how many it goes on where another's end is held; wide:
+ * (count): the extent of the largest of these, else 0. */
+INK_API void ink_held(const double *points, const int32_t *from, int32_t count, const double *rings, int32_t many,
+                      double in_ring, double through, double shorter, int32_t *held, double *wide) {
     for (int n = 0; n < count; n++) {
-        const double *e = lines + 4 * n;
-        const double u = e[2] - e[0], v = e[3] - e[1], length = hypot(u, v);
-        int first = 0, last = 0;
-        for (int k = 0; k < many && !(first && last); k++) {
-            const double *r = rings + 3 * k, x = r[0] - e[0], y = r[1] - e[1], reach = in_ring * r[2];
-            const double far_x = r[0] - e[2], far_y = r[1] - e[3];
-            const int in_first = x * x + y * y < reach * reach, in_last = far_x * far_x + far_y * far_y < reach * reach;
-            if (!(in_first || in_last) || shorter * r[2] >= length) continue;
-            if (fabs(u * y - v * x) >= through * r[2] * length) continue;
-            first |= in_first;
-            last |= in_last;
+        const Course l = course_of(points, from, n);
+        int found = 0, on = 0;
+        wide[n] = 0;
+        for (int k = 0; k < many; k++) {
+            const double *r = rings + 3 * k, reach = in_ring * r[2];
+            int its = ends_in(&l, r, reach, shorter), there = 0;
+            if (its < 0) continue;
+            if (its && fabs(l.u * (r[1] - l.points[1]) - l.v * (r[0] - l.points[0])) >= through * r[2] * l.length) its = 0;
+            for (int m = 0; m < count && !its && !there; m++) {
+                const Course other = course_of(points, from, m);
+                there = ends_in(&other, r, reach, shorter) > 0 && passes(&l, r, through * r[2], &other);
+            }
+            found |= its;
+            on += there;
+            if ((its || there) && wide[n] < r[2]) wide[n] = r[2];
         }
-        held[n] = first + last;
+        held[n] = !!(found & FIRST) + !!(found & LAST) + on;
     }
 }
