@@ -64,7 +64,9 @@ _arrows = ctypes.CFUNCTYPE(_int, *[_pointer] * 6, _int, *[_pointer] * 2, _double
 _beside = ctypes.CFUNCTYPE(ctypes.c_int64, _pointer, _int, _pointer, _int, _pointer, ctypes.c_int64)(
     ("ink_beside", _lib)
 )
-_held = ctypes.CFUNCTYPE(None, *[_pointer] * 2, _int, _pointer, _int, *[_double] * 3, *[_pointer] * 2)(("ink_held", _lib))
+_held = ctypes.CFUNCTYPE(None, *[_pointer] * 2, _int, _pointer, _int, *[_double] * 3, *[_pointer] * 2)(
+    ("ink_held", _lib)
+)
 _patches = ctypes.CFUNCTYPE(_int, *[_pointer] * 2, _int, _int, *[_pointer] * 2)(("ink_patches", _lib))
 _words = ctypes.CFUNCTYPE(
     ctypes.c_int64, _pointer, _int, *[_pointer] * 3, _double, _double, _pointer, ctypes.c_int64

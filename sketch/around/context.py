@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sketch.around.pins import PINNED, REACH, is_over, stands_on
+from sketch.around.pins import PINNED, REACH, is_on_line, is_over, stands_on
 from sketch.around.writing import LARGEST, WITHIN, WRITTEN
 from sketch.kernel import beside, depth, gap
 from sketch.kernel import held as ends_held
@@ -226,7 +226,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             elif c.rough > ROUGH:
                 gains[k] -= WRITTEN
         if c.kind == "cross":
-            large = extent > LARGE * size
+            large = extent > LARGE * size or bodies.pins(c, extent)
             if any(bodies.under(c, extent, extent / MARKED)) or (not large and bodies.on_line(c, extent)):
                 gains[k] += ANCHORS
             elif large or not bodies.reached(c):
@@ -345,6 +345,16 @@ class _Bodies:
             and set(cross.pieces).isdisjoint(body.pieces)
             and any(depth(x, y, body.outline) < 0 for x, y in cross.outline.tolist())
             for body, (x0, y0, x1, y1, extent) in self.closed
+        )
+
+    def pins(self, cross: Fitted, extent: float) -> bool:
+        """Whether a ring that is small beside an X is where its bars cross: of two rods the pin."""
+        return any(
+            body.kind == "circle"
+            and all(
+                is_on_line(body.middle, wide, bar, extent) for bar in (cross.outline[:2], cross.outline[2:])
+            )
+            for body, (*_, wide) in self.closed
         )
 
     def axle(self, c: Fitted, extent: float) -> bool:

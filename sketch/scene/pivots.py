@@ -54,7 +54,7 @@ def pivots(
 ) -> tuple[list[Pivot], list[tuple[Drawn, Drawn]]]:
     """Small circles over bodies that overlap, or over one beside which they are small, become pivots.
 
-    pin: radius that one to the background, or of an open line, hardly exceeds [pixels].  Returns the joints in the
+    pin: radius that one to the background, of an open line, or in two rings hardly exceeds [pixels].  Returns the joints in the
     order in which their circles were drawn; and the circles that are nearly as likely a ball in front of a body as its
     pivot to the page, each with the body.
     """
@@ -118,9 +118,10 @@ def _odds(
     if ring.forced == "pivot":
         under, odds = under or [d for _, d in _near(ring, NEAR * ring.radius, bodies)][:1], 1.0
         return tuple(under), tuple(further), odds
-    if len(under) == 1 or any(d.kind == "bar" for d in under):
+    is_pinned = _pinned(ring, bodies)
+    if len(under) == 1 or is_pinned or any(d.kind == "bar" for d in under):
         odds *= 1 / (1 + (ring.radius / pin) ** 6)
-    if _pinned(ring, bodies):
+    if is_pinned:
         odds /= odds + (1 - odds) * WHEEL
     return tuple(under), tuple(further), odds
 

@@ -29,7 +29,10 @@ SURER = 10.0  # nats, at most, that a letter gains beyond an X of its ink: a bod
 # nats that an X in two strokes leaves to be said about its ink: 99 in 100 of people's leave less, an "f", a "4" and a
 # crossed "7" more
 PLAIN = 25.0
-EVEN = 0.15  # of the logarithm of its bars' lengths' ratio: how much that differs from 0; a "t" has a short bar
+ODD = 15.0  # nats, at most, that an X is odd: as much says a body under it, which then says nothing
+EVEN = (
+    0.15  # of the logarithm of its bars' lengths' ratio: how much that differs from 0; a "t" has a short bar
+)
 SHORT = 0.6  # of the bars of an X: what is no longer, and touches them, is a loose side of it
 TOUCHING = 0.12  # of the smaller stroke: what is between the strokes of one letter
 MOST_STROKES = 4  # of one letter
@@ -170,7 +173,7 @@ def _odd(cross: Fitted) -> float:
     """Nats that an X in two strokes is rarer than what people draw as one."""
     a, b, c, d = cross.outline.tolist()
     uneven = math.log(math.dist(a, b) / math.dist(c, d)) / EVEN
-    return max(cross.rough - PLAIN, 0.0) + 0.5 * uneven**2
+    return min(max(cross.rough - PLAIN, 0.0) + 0.5 * uneven**2, ODD)
 
 
 def _as_ring(of: Mapping[int, Proposed], group: tuple[int, ...]) -> tuple[list[tuple[int, int]], bool]:
