@@ -54,9 +54,9 @@ def pivots(
 ) -> tuple[list[Pivot], list[tuple[Drawn, Drawn]]]:
     """Small circles over bodies that overlap, or over one beside which they are small, become pivots.
 
-    pin: radius that one to the background, of an open line, or in two rings hardly exceeds [pixels].  Returns the joints in the
-    order in which their circles were drawn; and the circles that are nearly as likely a ball in front of a body as its
-    pivot to the page, each with the body.
+    pin: radius that one to the background, of an open line, or in two rings hardly exceeds [pixels].  Returns the
+    joints in the order in which their circles were drawn; and the circles that are nearly as likely a ball in front of
+    a body as its pivot to the page, each with the body.
     """
     circles = [d for d in bodies.drawn if d.kind == "circle"]
     pins: dict[Drawn, _Pin] = {}

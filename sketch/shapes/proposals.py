@@ -125,12 +125,6 @@ class Proposed:
         """Which of them are bars."""
         return [k for k, c in enumerate(self.candidates) if c.kind == "bar"]
 
-    @lazy
-    def ends(self) -> Array:
-        """The ends of each bar [pixels], (bars, 2, 2)."""
-        lines = [self.candidates[k].outline for k in self.bars]
-        return np.concatenate([line[:: len(line) - 1] for line in lines]).reshape(-1, 2, 2)
-
     def course(self, line: Fitted) -> tuple[Array, Row]:
         """One of these bars as it bends along its ink, and where it is: over a long one the hand strays further than
         what stands on it is large."""

@@ -1,12 +1,12 @@
-"""What is written in a box is no side of it, though the box gapes there."""
+"""What is written in a box is no side of it, though the box gapes there, and no X on it."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from pages import read
+from pages import Point, box, read
 
-from sketch.synthetic import Hand, curve, line
+from sketch.synthetic import HANDS, Hand, cross, curve, line, outline
 
 HAND = Hand(tremor=0.002, drift=0.008, rounding=0.02, overshoot=0.02, spacing=0.03, unsteady=0.5)
 
@@ -26,3 +26,23 @@ def test_letters_beside_a_gap_are_no_part_of_the_outline(seed: int) -> None:
     words = [curve(points, HAND, rng)[0] for points in (m, stem, foot)]
     (body,) = read(sides, words).scene.bodies
     assert set(body.strokes) == {0, 1, 2}
+
+
+LETTERS: dict[str, list[list[Point]]] = {  # in a box of height 1
+    "7": [[(0, 0.02), (0.5, 0), (0.15, 1)], [(0.08, 0.5), (0.5, 0.48)]],
+    "4": [[(0.3, 0), (0, 0.65), (0.55, 0.65)], [(0.4, 0.32), (0.4, 1)]],
+    "f": [[(0.45, 0.1), (0.28, 0), (0.2, 0.25), (0.2, 1)], [(0, 0.45), (0.4, 0.43)]],
+}
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("letter", LETTERS)
+def test_a_letter_with_a_bar_across_it_is_no_anchor(letter: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    floor = outline(box(640, 650, 1000, 60), HAND, rng) + cross((640, 650), 34, HAND, rng)
+    strokes = [
+        line([(625 + 30 * x, 565 + 30 * y) for x, y in points], HANDS["neat"], rng)[0]
+        for points in LETTERS[letter]
+    ]
+    scene = read(floor, outline(box(640, 580, 120, 90), HAND, rng), strokes).scene
+    assert [body.anchored for body in scene.bodies] == [True, False]

@@ -133,3 +133,39 @@ def test_a_beam_of_two_strokes_between_two_weights_is_no_pair_of_rods(seed: int)
     lower = line([(300, 333), (860, 333), (860, 300)], hand, rng)
     weights = [outline(ngon(5, x, 318, 60), hand, rng) for x in (285, 875)]
     assert next(body.strokes for body in read(upper, lower, *weights).scene.bodies) == [0, 1]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_beam_with_legs_pinned_under_it_is_no_box_with_the_ground(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    hand = HANDS["neat"]
+    ground = line([(250, 600), (1030, 602)], hand, rng) + cross((650, 600), 34, hand, rng)
+    beam = line([(350, 260), (930, 262)], hand, rng)
+    legs = [s for x, foot in ((440, 420), (840, 860)) for s in line([(x, 261), (foot, 520)], hand, rng)]
+    pins = [s for x in (440, 840) for s in circle((x, 261), 9, hand, rng)]
+    scene = read(ground, beam, legs, pins, arrow((90, 150), (90, 270), hand, rng)).scene
+    assert [body.anchored for body in scene.bodies] == [True, False, False, False]
+    assert [tuple(joint.bodies) for joint in scene.joints] == [("b2", "b3"), ("b2", "b4")]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_rods_that_cross_under_a_pin_are_no_x(seed: int) -> None:
+    """Their ends come near to a floor, as those of an X drawn beside it would."""
+    rng = np.random.default_rng(seed)
+    hand = HANDS["neat"]
+    floor = outline(box(640, 655, 1000, 60), hand, rng)
+    rods = line([(450, 630), (830, 330)], hand, rng) + line([(830, 632), (450, 330)], hand, rng)
+    scene = read(floor, rods, circle((640, 480), 9, hand, rng)).scene
+    assert [tuple(joint.bodies) for joint in scene.joints] == [("b2", "b3")]
+    assert not any(body.anchored for body in scene.bodies)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_wheel_with_an_axle_is_no_pin_however_long_its_cart_is(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    hand = HANDS["neat"]
+    strokes = outline(box(640, 600, 1000, 60), hand, rng) + outline(box(640, 480, 520, 110), hand, rng)
+    for x in (460, 640, 820):
+        strokes += circle((x, 530), 38, hand, rng) + circle((x, 530), 8, hand, rng)
+    scene = read(strokes).scene
+    assert [tuple(joint.bodies) for joint in scene.joints] == [("b2", "b3"), ("b2", "b4"), ("b2", "b5")]
