@@ -402,13 +402,13 @@ def _rivals(chosen: Chosen, ways: _Ways) -> list[Rival]:
 
     add("unread", "unread", gain)
     for p, gains in ways:
-        for other, its in zip(p.candidates, gains, strict=True):
-            if other.pieces == fit.pieces:
-                meaning, (sides, more) = _meaning(other), other.next
-                if meaning != own:
-                    add(other.kind, meaning, gain - its, {fit.kind, other.kind} == {"circle", "ellipse"})
-                if sides and min(sides, MANY) != own:
-                    add("polygon", min(sides, MANY), gain - its + more)
+        for k in p.of_ink.get(fit.pieces, ()):
+            other, its = p.candidates[k], gains[k]
+            meaning, (sides, more) = _meaning(other), other.next
+            if meaning != own:
+                add(other.kind, meaning, gain - its, {fit.kind, other.kind} == {"circle", "ellipse"})
+            if sides and min(sides, MANY) != own:
+                add("polygon", min(sides, MANY), gain - its + more)
     return list(best.values())
 
 

@@ -36,6 +36,10 @@ STRANGE = 35.0  # nats to say that something was drawn that has no meaning here;
 LINE = 11.0  # as in core/scoring.h
 
 
+# pieces that a primitive explains besides its own, of which each may be the only one: in shading very many may
+MOST_BY_ITSELF = 6
+
+
 @dataclass(eq=False)  # frozen, it would take four times as long to make, and very many are
 class Fitted:
     """A primitive fitted to some ink. Never changed once it is made.
@@ -80,7 +84,8 @@ class Fitted:
 
     def together(self, costs: Mapping[int, float]) -> list[Fitted]:
         """The same with further pieces that it explains too, given what each costs: with all, or with one of them."""
-        sets = [tuple(costs), *((j,) for j in costs)] if len(costs) > 1 else [tuple(costs)] if costs else []
+        some = sorted(costs, key=costs.__getitem__)[:MOST_BY_ITSELF] if len(costs) > MOST_BY_ITSELF else costs
+        sets = [tuple(costs), *((j,) for j in some)] if len(costs) > 1 else [tuple(costs)] if costs else []
         own = self.outline, self.model, self.scale, self.narrow, self.gap, self.rough, self.next, self.figure
         return [
             Fitted(

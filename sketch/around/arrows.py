@@ -91,8 +91,10 @@ def pointing(
     if first is not None:
         most = rarer[first[0]][first[1]] + ONE_ARROW - SECOND
         prefer_arrow(proposed, rarer, arrows, first, most)
-    by = {n: tuple(k for m, k in pointers if m == n) for n, _ in pointers}
-    return rarer, other, {n: kept(_pointers, proposed[n], its) for n, its in by.items()}
+    by: dict[int, list[int]] = {}
+    for n, k in pointers:
+        by.setdefault(n, []).append(k)
+    return rarer, other, {n: kept(_pointers, proposed[n], tuple(its)) for n, its in by.items()}
 
 
 def _pointers(proposed: Proposed, which: tuple[int, ...]) -> Proposed:

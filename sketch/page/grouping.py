@@ -19,6 +19,8 @@ from sketch.typing import Array, Point
 __all__ = ["WIDE", "closing_chains", "closing_ink", "crosses", "crossing", "in_line", "shafts"]
 
 MOST_CROSSED = 12  # bars that one bar may make an X with, the nearest in length: in shading each lies on all
+MOST_IN_LINE = 6  # parts of one straight line with it, those nearest to that
+MOST_OVER = 6  # bars that may make an X with one in two strokes, likewise
 MOST_CHAINS = 16  # chains from one piece that are fitted, the tightest first
 MOST_OPEN = 5  # likewise, of chains with wide gaps, which are many in a tangle
 WIDE = 0.1  # of a chain's ink: gaps that are wide
@@ -106,23 +108,24 @@ def crosses(page: Page, p: Piece) -> Iterator[tuple[int, ...]]:
             yield (p.index, j)
 
 
-def crossing(page: Page, bar: Fitted) -> Iterator[Piece]:
+def crossing(page: Page, bar: Fitted) -> list[Piece]:
     """Strokes of other ink that may make an X with a straight bar, given as its reading."""
     (ax, ay), (bx, by) = bar.outline.tolist()
-    long = math.hypot(bx - ax, by - ay)
+    long, found = math.hypot(bx - ax, by - ay), []
     for q in page.touching(min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)):
-        alike = max(q.length, long) <= UNLIKE * min(q.length, long)
-        if alike and q.index not in bar.pieces and _is_bar(q) and page.apart(q.index, bar.pieces):
-            yield q
+        unlike = max(q.length, long) / min(q.length, long)
+        if unlike <= UNLIKE and q.index not in bar.pieces and _is_bar(q) and page.apart(q.index, bar.pieces):
+            found.append((unlike, q))
+    return _first(found, MOST_OVER)
 
 
-def in_line(page: Page, p: Piece) -> Iterator[Piece]:
+def in_line(page: Page, p: Piece) -> list[Piece]:
     """Later strokes that go on with a straight one, or over it again: as straight, and nearly the same way."""
     if not _is_line(p):
-        return
+        return []
     (ax, ay), (bx, by) = p.reach
     x0, y0, x1, y1 = p.box
-    reach = BESIDE * p.length
+    reach, found = BESIDE * p.length, []
     for q in page.touching(x0 - reach, y0 - reach, x1 + reach, y1 + reach):
         if q.index > p.index and _is_line(q) and page.apart(p.index, (q.index,)):
             (cx, cy), (dx, dy) = q.reach
@@ -131,7 +134,16 @@ def in_line(page: Page, p: Piece) -> Iterator[Piece]:
                 (bx - ax) * (dx - cx) + (by - ay) * (dy - cy),
             )
             if abs(across) < ALIKE * abs(along):
-                yield q
+                middle = (ax - (cx + dx) / 2) * (by - ay) - (ay - (cy + dy) / 2) * (bx - ax)
+                found.append((abs(middle), q))
+    return _first(found, MOST_IN_LINE)
+
+
+def _first(found: list[tuple[float, Piece]], most: int) -> list[Piece]:
+    """Of pieces with a number those with the least, in the order of drawing."""
+    if len(found) > most:
+        found = sorted(sorted(found, key=lambda t: t[0])[:most], key=lambda t: t[1].index)
+    return [q for _, q in found]
 
 
 def _is_line(p: Piece) -> bool:

@@ -116,6 +116,14 @@ class Proposed:
         return _around(self.looked.boxes)
 
     @lazy
+    def of_ink(self) -> dict[tuple[int, ...], list[int]]:
+        """Which of the candidates are of some pieces."""
+        which: dict[tuple[int, ...], list[int]] = {}
+        for k, c in enumerate(self.candidates):
+            which.setdefault(c.pieces, []).append(k)
+        return which
+
+    @lazy
     def arrows(self) -> list[int]:
         """Which of the candidates are arrows."""
         return [k for k, c in enumerate(self.candidates) if c.kind == "arrow"]
