@@ -22,7 +22,7 @@ from sketch.typing import Array
 if TYPE_CHECKING:
     from sketch.page.pieces import Piece
 
-__all__ = ["Fitted", "misfit", "misfit_of", "unread"]
+__all__ = ["ONE_MORE", "Fitted", "misfit", "misfit_of", "unread"]
 
 # spread of ink about what was meant, as a share of its size; of outlines it is less
 TREMOR = 0.05  # as in core/scoring.h
@@ -36,8 +36,7 @@ STRANGE = 35.0  # nats to say that something was drawn that has no meaning here;
 LINE = 11.0  # as in core/scoring.h
 
 
-# pieces that a primitive explains besides its own, of which each may be the only one: in shading very many may
-MOST_BY_ITSELF = 6
+ONE_MORE = 6  # pieces, the first, of which each may be the only one that a primitive explains besides its own
 
 
 @dataclass(eq=False)  # frozen, it would take four times as long to make, and very many are
@@ -83,9 +82,9 @@ class Fitted:
         return x, y
 
     def together(self, costs: Mapping[int, float]) -> list[Fitted]:
-        """The same with further pieces that it explains too, given what each costs: with all, or with one of them."""
-        some = sorted(costs, key=costs.__getitem__)[:MOST_BY_ITSELF] if len(costs) > MOST_BY_ITSELF else costs
-        sets = [tuple(costs), *((j,) for j in some)] if len(costs) > 1 else [tuple(costs)] if costs else []
+        """The same with further pieces that it explains too, given what each costs: with all, or with one of the first."""
+        sets = [tuple(costs)] if costs else []
+        sets += ((j,) for j in list(costs)[:ONE_MORE] if len(costs) > 1)
         own = self.outline, self.model, self.scale, self.narrow, self.gap, self.rough, self.next, self.figure
         return [
             Fitted(

@@ -15,7 +15,8 @@ __all__ = ["Part", "best", "part"]
 Group = tuple[int, ...]  # of pieces of ink
 Packed = tuple[Group, float]  # and what it gains
 
-MOST_PIECES = 400  # in one cluster: beyond, it is shading, and the best groups are taken one after another
+# in one cluster: beyond, it is shading, and groups are taken one after another, as far as prices speak for them
+MOST_PIECES, MOST_GROUPS = 400, 1000
 MOST_TRIED = 24  # groups of a piece, the best by the piece, that may outdo another
 ROUNDS = 2  # of lowering the pieces' shares in what a packing may gain
 FEW_LOOKS = (
@@ -223,8 +224,8 @@ def _packed(groups: Sequence[Packed]) -> list[int]:
         return [0]
     if len(groups) == 2 and groups[0][1] != groups[1][1]:  # as they share ink, the better one
         return [0] if groups[0][1] > groups[1][1] else [1]
-    if len({i for ink, _ in groups for i in ink}) > MOST_PIECES:
-        return _greedy(_as_bits(groups), np.array([gain for _, gain in groups]))
+    if len(groups) > MOST_GROUPS or len({i for ink, _ in groups for i in ink}) > MOST_PIECES:
+        return _narrowed(groups, [])[0]
     best, is_best = _branched(groups, _shares(groups), FEW_LOOKS)
     if is_best:
         return best

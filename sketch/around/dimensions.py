@@ -23,11 +23,10 @@ def dimension_line(page: Page, bar: Fitted, idle: Sequence[Piece]) -> set[int]:
     ends = bar.outline[[0, -1]]
     long = math.dist(*ends.tolist())
     its = [page.pieces[i] for i in bar.pieces]
-    near = [
-        q
-        for q in idle
-        if q.extent < MARK * long and q not in its and any(p.is_near(q, AT_END * long) for p in its)
-    ]
+    small = [q for q in idle if q.extent < MARK * long and q not in its]
+    if not all(any(_may_be_at(q, end, AT_END * long) for q in small) for end in ends.tolist()):
+        return set()
+    near = [q for q in small if any(p.is_near(q, AT_END * long) for p in its)]
     if len(near) < 2:
         return set()
     inks = [page.strokes.samples[q.stroke] for q in near]
@@ -40,3 +39,9 @@ def dimension_line(page: Page, bar: Fitted, idle: Sequence[Piece]) -> set[int]:
     if not (at.any(axis=0).all() and (there | (off > reach)).all()):
         return set()
     return {*bar.pieces, *(q.index for q, end in zip(near, there, strict=True) if end)}
+
+
+def _may_be_at(mark: Piece, end: list[float], reach: float) -> bool:
+    """Whether a mark may be so near to an end, for all that its box tells."""
+    (x, y), (x0, y0, x1, y1) = end, mark.box
+    return x0 - reach < x < x1 + reach and y0 - reach < y < y1 + reach

@@ -13,7 +13,7 @@ from sketch.lazy import lazy
 from sketch.library import address
 from sketch.page.loose import Chain, End, LooseEnds
 from sketch.page.near import Near
-from sketch.scoring import unread
+from sketch.scoring import ONE_MORE, unread
 from sketch.typing import Array, Point
 
 __all__ = ["Looked", "Page", "Piece"]
@@ -22,6 +22,7 @@ SPECK = 1 / 8  # of the canvas: what is drawn on less of it is small, not a page
 DOT = 0.08  # of the usual stroke's extent: in less the pen rested, and what it did there says little
 ONCE = 1.2  # of its extent: a straight line that is longer is gone over again; one that is not is 1.15 extents long
 LINE = 0.03  # of its extent: how far across ink is, at most, that goes over one straight line again
+MOST_AGAIN = 24  # pieces that are drawn along one outline once more: in shading, and in a net, most are
 OBSERVATIONS = 30  # in ink as long as the outline of a circle three times as wide as its ink's spread
 FACTS = 6  # numbers of a struct Facts of core/facts.h
 
@@ -233,7 +234,8 @@ class Page:
     def again(
         self, outline: Array, reach: float, names: tuple[int, ...], scale: float, shaft: float = 0.0
     ) -> dict[int, float]:
-        """The pieces that are drawn along an outline once more, with the nats to say each, fewer than it takes freely.
+        """The pieces that are drawn along an outline once more, with the nats to say each, fewer than it takes freely;
+        of many those that save the most, these first.
 
         reach: as far from the outline's box as they are [pixels].  names: the pieces that the outline is of.
         scale: of a body, which is drawn over no more precisely than it is; 0 for a mark [pixels].
@@ -241,6 +243,9 @@ class Page:
         """
         costs, box = self._near.again(outline, reach, names, scale, shaft)
         self.looked.boxes.append(box)
+        if len(costs) > ONE_MORE:
+            most = sorted(costs, key=lambda i: costs[i] - self.pieces[i].unread)[:MOST_AGAIN]
+            costs = {i: costs[i] for i in most}
         return costs
 
     def touching(self, x0: float, y0: float, x1: float, y1: float) -> list[Piece]:

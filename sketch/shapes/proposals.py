@@ -44,6 +44,9 @@ MEANT = 4.0  # nats that a reading is to save: less would be luck, as so many ar
 THINNEST = 1.001 * LEAST_AXIS  # of the page: outlines that are no wider were judged as wider than they are
 LITTLE = 0.2  # of an outline's scale: pieces whose distance from it is compared with their own
 ALONG = 0.3  # of an outline's scale: as near to it is what may be drawn along it once more
+MOST_GROUPS = (
+    32  # that one piece leads: of an ordinary page's hardly one leads ten, in shading each leads any number
+)
 HOPELESS = 40.0  # nats that a reading may lose: what stands around it says less than that for it
 
 Key = tuple[tuple[int, ...], Hashable]  # the pieces that a fit is of, and how they are taken
@@ -313,7 +316,7 @@ class Proposals:
                     out += [cross, *with_strays(page, cross, self._said(cross.pieces))]
             out += self._arrows(p)
         every = [(c, self._said(c.pieces) - c.cost - MEANT) for c in out]
-        likely = [(c, gain) for c, gain in every if gain > -HOPELESS]
+        likely = _best_groups([(c, gain) for c, gain in every if gain > -HOPELESS])
         return proposing([c for c, _ in likely], [gain for _, gain in likely], looked, fits)
 
     def _said(self, names: tuple[int, ...]) -> float:
@@ -333,6 +336,19 @@ class Proposals:
 def _thin(found: list[Fitted], narrowest: float) -> bool:
     """Whether an outline is so narrow that it depends on the page's size how it was judged."""
     return bool(found) and 0 < found[0].narrow <= narrowest
+
+
+def _best_groups(readings: list[tuple[Fitted, float]]) -> list[tuple[Fitted, float]]:
+    """Of readings, with their gains, those of the groups that gain the most by the piece, and of a piece alone."""
+    best: dict[tuple[int, ...], float] = {}
+    for c, gain in readings:
+        best[c.pieces] = max(
+            gain / len(c.pieces) if len(c.pieces) > 1 else math.inf, best.get(c.pieces, -math.inf)
+        )
+    if len(best) <= MOST_GROUPS:
+        return readings
+    most = set(sorted(best, key=best.__getitem__, reverse=True)[:MOST_GROUPS])
+    return [(c, gain) for c, gain in readings if c.pieces in most]
 
 
 def proposing(
