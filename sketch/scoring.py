@@ -82,7 +82,7 @@ class Fitted:
         return x, y
 
     def together(self, costs: Mapping[int, float]) -> list[Fitted]:
-        """The same with further pieces that it explains too, given what each costs: with all, or with one of the first."""
+        """The same with further pieces that it explains too, given what each costs: all, or one of the first."""
         sets = [tuple(costs)] if costs else []
         sets += ((j,) for j in list(costs)[:ONE_MORE] if len(costs) > 1)
         own = self.outline, self.model, self.scale, self.narrow, self.gap, self.rough, self.next, self.figure

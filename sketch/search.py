@@ -19,9 +19,7 @@ Packed = tuple[Group, float]  # and what it gains
 MOST_PIECES, MOST_GROUPS = 400, 1000
 MOST_TRIED = 24  # groups of a piece, the best by the piece, that may outdo another
 ROUNDS = 2  # of lowering the pieces' shares in what a packing may gain
-FEW_LOOKS = (
-    100_000  # looks at groups, in one cluster, before those that can be in no better packing are left out
-)
+FEW_LOOKS = 25_000  # looks at groups, in one cluster, before those that are in no better packing are left out
 MOST_LOOKS = 400_000  # and after: shading and grids, where no set is right, end with the best so far
 DESCENTS = 100  # steps by which the prices of pieces are lowered,
 PATIENCE = 5  # of which so many without gain halve the steps after,
