@@ -271,6 +271,13 @@ def squares(count: int) -> list[np.ndarray]:
     return rows + [row[:, ::-1].copy() for row in rows]
 
 
+def net(count: int) -> list[np.ndarray]:
+    """Long lines near one another, each across half of all."""
+    at = np.linspace(0, 1000, count // 2)
+    rows = [np.array([[0, y], [1000, y + 3 * math.sin(k)]]) for k, y in enumerate(at)]
+    return rows + [row[:, ::-1].copy() for row in rows]
+
+
 def machine_parts() -> list[np.ndarray]:
     """The strokes of a cart and a pendulum."""
     rng = np.random.default_rng(0)
@@ -288,7 +295,9 @@ def seconds(ink: list[np.ndarray], times: int) -> float:
 
 
 @pytest.mark.parametrize(
-    "ink", [hatching(60), squares(12), hatching(450)], ids=["hatching", "squares", "much"]
+    "ink",
+    [hatching(60), squares(12), hatching(450), net(140)],
+    ids=["hatching", "squares", "much", "net"],
 )
 def test_shading_takes_no_time(ink: list[np.ndarray]) -> None:
     """Ink in which everything is near everything: the number of groups is bounded, and no stroke of it takes much
