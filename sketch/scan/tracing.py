@@ -124,7 +124,7 @@ class _Rings(NamedTuple):
 
 def _without_rings(graph: Graph, mask: Image, distance: NDArray[np.float32], pen: float) -> _Rings:
     """Take the small rings out of the graph, in place: the certain ones first."""
-    found, names = find_rings(mask, distance, pen), count()
+    found, names = find_rings(mask, distance, pen, graph.edges), count()
     plain, certain = take_rings(graph, [ring for ring in found if ring.strain < CERTAIN], pen, names)
     whole, doubtful = take_rings(graph, [ring for ring in found if ring.strain >= CERTAIN], pen, names)
     tangles = [tangle for tangle in (_small_pieces(plain), whole) if tangle is not None]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sketch.scan.binding import belt, distances
 from sketch.scan.paper.fills import holes
+from sketch.scan.quantiles import median
 from sketch.scan.skeleton.graph import Edge, Graph, Ink
 from sketch.scan.strokes.ways import Way
 from sketch.typing import Box, Points
@@ -33,23 +34,36 @@ ALL_ROUND = 0.7  # of its length: an edge that has so much of the ring is the ri
 BLOT = 0.75  # pen widths from the paper: ink that is further from it is a hole that closed, and no line
 PEAK = SMALLEST + 0.5  # pen widths from the paper: the middle of the smallest ring whose hole closed
 PART = 0.7  # of the box around a ring: what fills less of it is a part of the ring
+# Times a line's width, where lines lead to a ring: what is no wider from edge to edge are two lines beside each other,
+# with a little paper between them, as where a slow pen closes an outline.
+TWO_LINES = 2.4
+NEARBY = (
+    3.0  # pen widths, beyond a pen's width from a ring, along which the lines that lead there are looked at
+)
 BELT = 0.7  # pen widths to either side of the pen's middle are the belt's ink
 
 
-def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[Way]:
+def find_rings(
+    mask: NDArray[Any], distance: NDArray[Any], pen: float, edges: Sequence[Edge] = ()
+) -> list[Way]:
     """The closed ways of the pen around small round holes [pixels], each shape (n, 2), best first.
 
-    mask: ink 1, paper 0, shape (h, w).  distance: each ink pixel's distance to the paper.  Their ink is not known yet.
+    mask: ink 1, paper 0, shape (h, w).  distance: each ink pixel's distance to the paper.  edges: the ink's lines.
+    Their ink is not known yet.
     """
     import cv2
 
     every = holes(mask)
+    lines = np.concatenate([np.zeros((0, 2)), *(edge.points for edge in edges)])
+    x, y = np.round(lines).astype(int).T
+    wide = 2 * distance[y, x]
     chinks = [way for way, area in every if area < CHINK * pen * pen]
     if chinks:
         mask = cv2.drawContours(mask.copy(), chinks, -1, 1, cv2.FILLED)
         distance = distances(mask)
     large = [(way, area) for way, area in every if area >= CHINK * pen * pen]
     found = [ring for seed in _seeds(large, distance, pen) if (ring := belt(mask, seed, pen)) is not None]
+    found = [ring for ring in found if not _is_two_lines(ring, lines, wide, pen)]
     # of the smaller there is less to be seen, and what lies between a ring and a line beside it may be round by chance
     found.sort(key=lambda ring: -ring[0] * ring[2] ** 0.5)
     rings: list[Way] = []
@@ -62,6 +76,17 @@ def find_rings(mask: NDArray[Any], distance: NDArray[Any], pen: float) -> list[W
             rings.append(Way(points, {}, -CHANCE * roundness))
             middles, radii = np.concatenate([middles, middle[None]]), np.append(radii, radius)
     return rings
+
+
+def _is_two_lines(ring: Belt, lines: Points, wide: NDArray[Any], pen: float) -> bool:
+    """Whether a ring is no wider than two of the lines that lead there, side by side.
+
+    lines: of all ink, shape (n, 2).  wide: how wide it is there [pixels], shape (n,).
+    """
+    _, middle, radius, _ = ring
+    off = np.hypot(*(lines - middle).T) - radius - pen
+    near = (off > 0) & (off < NEARBY * pen)
+    return bool(near.any()) and 2 * radius + pen < TWO_LINES * median(wide[near])
 
 
 def _is_in(ring: Belt, outer: Belt, pen: float) -> bool:

@@ -49,6 +49,15 @@ def test_half_of_a_ring_that_a_line_crosses_is_no_ring(pen: float, low: float) -
     assert abs(size - radius) < 2
 
 
+def test_two_lines_that_run_beside_each_other_are_no_ring() -> None:
+    pen, wide = 4.8, 8.0  # it was slow there
+    mask = (inked([[(60, 200), (340, 204)], [(200, 208), (206, 208)]], wide) > 0.5).astype(np.uint8)
+    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
+    edges = build_graph(trace(*thin(mask)), distance, pen).edges
+    assert find_rings(mask, distance, pen)
+    assert not find_rings(mask, distance, pen, edges)
+
+
 def test_what_a_line_across_a_ring_cuts_off_is_part_of_it() -> None:
     ring = np.array(circle(200, 200, 10))
     part = np.concatenate([ring[10:35], ring[10:11]])
