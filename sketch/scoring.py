@@ -34,8 +34,6 @@ FREE = 4.0  # nats an observation to say ink freely, point by point; as in core/
 STRANGE = 35.0  # nats to say that something was drawn that has no meaning here; as in core/scoring.h
 # observations in a straight line: what is less, a tap of the pen, is less of a surprise
 LINE = 11.0  # as in core/scoring.h
-
-
 ONE_MORE = 6  # pieces, the first, of which each may be the only one that a primitive explains besides its own
 
 
