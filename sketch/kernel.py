@@ -271,7 +271,8 @@ def held(
     count = len(lines)
     first = np.fromiter(accumulate(map(len, lines), initial=0), dtype=np.int32)
     found, wide = np.empty(count, dtype=np.int32), np.empty(count)
-    of = address(np.concatenate(lines)), address(first), count, address(rings), len(rings)
+    points = np.ascontiguousarray(np.concatenate(lines), dtype=np.float64)  # kept, while it is read
+    of = address(points), address(first), count, address(rings), len(rings)
     _held(*of, in_ring, through, shorter, address(found), address(wide))
     return found.tolist(), wide.tolist()
 

@@ -105,8 +105,8 @@ static double irregular(const Closed *fit, int k) {
 
 /* Nats to say how much of the ink's turning is at a polygon's corners, of something round (out) and of the polygon. Beside
  * many corners nothing is left to turn.
- * most: sides that it is told of.  steps: between the points of its line, MANY where there are more: all turning is at these, and as many of them as the
- * polygon has corners may be its corners. */
+ * most: sides that it is told of.  steps: between the points of its line, MANY where there are more: all turning is at these,
+ * and as many of them as the polygon has corners may be its corners. */
 static double turning(const Closed *fit, int sides, int most, double steps, double *evenly) {
     *evenly = 0;
     if (sides > most || !isfinite(fit->cost[sides])) return 0;
