@@ -243,16 +243,15 @@ static int is_simple(const Polygon *p) {
 }
 
 /* The cheapest polygons of each number of sides: those that are no outline, as their sides cross, may lead to one that is.
- * And what the cheapest outline takes that has arcs, its corners too. */
+ * And the cheapest outline that has arcs. */
 typedef struct {
-    Polygon *simple, any[SIDES + 1];
-    double arced;
+    Polygon *simple, any[SIDES + 1], arched;
 } Found;
 
 /* Take a polygon for the best of its number of sides, if it is. */
 static void take(const Ink *ink, const Polygon *p, Found *found) {
-    const double arced = p->arced + p->k * ink->side;
-    if (arced < found->arced && is_simple(p)) found->arced = arced;
+    const double more = (p->k - found->arched.k) * ink->side;
+    if (p->arced + more < found->arched.arced - TIE && is_simple(p)) found->arched = *p;
     if (p->cost < found->any[p->k].cost - TIE) found->any[p->k] = *p;
     if (p->cost < found->simple[p->k].cost - TIE && is_simple(p)) found->simple[p->k] = *p;
 }
@@ -323,15 +322,18 @@ static int leave_out(Polygon *p, int q) {
     return 1;
 }
 
+/* Nats to say the ink, given a polygon, or if its sides that bow far were meant to. */
+static double nats(const Polygon *p, int arcs) { return arcs ? p->arced : p->cost; }
+
 /* Move corners, each by a sample at a time, as long as that costs less. Where one came from is not looked at again, nor the
  * corner itself before another one has moved. */
-static void refine(const Ink *ink, Polygon *p) {
+static void refine(const Ink *ink, Polygon *p, int arcs) {
     for (int q = 0, idle = 0; idle < p->k; q = (q + 1) % p->k) {
         int moved = 0;
         for (int by = -1; by <= 1 && !moved; by += 2)
             for (Polygon t = *p; move(&t, q, by); t = *p) {
                 judge(ink, &t);
-                if (!(t.cost < p->cost - TIE)) break;
+                if (!(nats(&t, arcs) < nats(p, arcs) - TIE)) break;
                 *p = t;
                 moved = 1;
             }
@@ -397,7 +399,7 @@ static void refine_best(const Ink *ink, Found *found) {
     for (int k = SIDES; k > best; k--)
         if (any[k].cost + (k - 1) * ink->side < any[best].cost + best * ink->side) best = k;
     Polygon fewer = any[best];
-    refine(ink, &fewer);
+    refine(ink, &fewer, 0);
     take(ink, &fewer, found);
     for (int k = best - 1; k >= 3; k--) {
         fewer.cost = INFINITY;
@@ -408,15 +410,23 @@ static void refine_best(const Ink *ink, Found *found) {
             if (p.cost < fewer.cost) fewer = p;
         }
         if (fewer.cost > any[k + 1].cost + ink->side + MENDS) return;
-        refine(ink, &fewer);
+        refine(ink, &fewer, 0);
         take(ink, &fewer, found);
         if (any[k].cost > any[k + 1].cost + ink->side) return;
     }
 }
 
+/* Likewise the outline that has arcs, the corners of which are elsewhere. */
+static void refine_arched(const Ink *ink, Found *found) {
+    Polygon p = found->arched;
+    if (!(p.arced + p.k * ink->side < ink->round + ROUNDER)) return;
+    refine(ink, &p, 1);
+    take(ink, &p, found);
+}
+
 void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, Polygon best[SIDES + 1], double *arced) {
     const double even[2] = {1, 1}, drawn[2] = {stretch, 1 / stretch};
-    Found found = {.simple = best, .arced = INFINITY};
+    Found found = {.simple = best, .arched.arced = INFINITY};
     for (int k = 0; k <= SIDES; k++) {
         best[k].cost = found.any[k].cost = INFINITY;
         best[k].undrawn = found.any[k].k = 0;
@@ -433,5 +443,6 @@ void best_polygons(const Ink *ink, Runs *square, Runs *longer, double stretch, P
         split_sides(ink, longer, drawn, &found);
     }
     refine_best(ink, &found);
-    *arced = found.arced;
+    refine_arched(ink, &found);
+    *arced = found.arched.arced + found.arched.k * ink->side;
 }

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from pages import kinds, ngon, page, read
+from pages import page
 
 from sketch import recognize
 from sketch.kernel import course_around
-from sketch.synthetic import HANDS, curve, outline
+from sketch.synthetic import HANDS, curve
 
 Array = NDArray[np.float64]
 
@@ -26,6 +26,11 @@ def arc(x: float, y: float, radius: float, begin: float, end: float) -> Array:
 
 HALF_DISC = arc(0, 0, 150, math.pi, 2 * math.pi), BASE
 QUARTER = arc(0, 0, 200, math.pi, 1.5 * math.pi), CORNER
+# where an arc meets a straight side is found as little by the corners of its best polygon as how deep it is
+RAMP = (
+    arc(150, -150, 300, 0.5 * math.pi, math.pi),
+    [(-150.0, -150.0), (-210.0, -150.0), (-210.0, 210.0), (150.0, 210.0)],
+)
 
 
 def along(corners: Array) -> Array:
@@ -35,7 +40,7 @@ def along(corners: Array) -> Array:
     return np.stack([np.interp(t, at, corners[:, k]) for k in (0, 1)], axis=1)
 
 
-@pytest.mark.parametrize("shape", [HALF_DISC, QUARTER], ids=["half disc", "quarter disc"])
+@pytest.mark.parametrize("shape", [HALF_DISC, QUARTER, RAMP], ids=["half disc", "quarter disc", "ramp"])
 @pytest.mark.parametrize("angle", [0.0, 0.9])
 @pytest.mark.parametrize(("name", "seed"), HAND)
 def test_what_bows_like_an_arc_is_followed(shape, angle: float, name: str, seed: int) -> None:
@@ -49,14 +54,6 @@ def test_what_bows_like_an_arc_is_followed(shape, angle: float, name: str, seed:
     around = along(np.concatenate([reading.outline, reading.outline[:1]]))
     meant = along(np.concatenate([first, second]))
     assert np.hypot(*(around[:, None] - meant).transpose(2, 0, 1)).min(axis=1).max() < 25
-
-
-@pytest.mark.parametrize("name", ["neat", "pieces", "quick"])
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("radius", [50, 150])
-def test_an_octagon_is_no_circle(name: str, seed: int, radius: float) -> None:
-    rng = np.random.default_rng(seed)
-    assert kinds(read(outline(ngon(8, 400, 300, radius), HANDS[name], rng))) == ["8-gon"]
 
 
 def test_what_two_strokes_have_beyond_their_corners_is_cut_off() -> None:

@@ -56,6 +56,14 @@ def test_a_hexagon_is_no_circle(hand, rng) -> None:
     assert kinds(read(outline(ngon(6, 300, 300, 110), hand, rng))) == ["6-gon"]
 
 
+@pytest.mark.parametrize("name", ["neat", "pieces", "quick"])
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("radius", [50, 150])
+def test_an_octagon_is_no_circle(name: str, seed: int, radius: float) -> None:
+    rng = np.random.default_rng(seed)
+    assert kinds(read(outline(ngon(8, 400, 300, radius), HANDS[name], rng))) == ["8-gon"]
+
+
 @pytest.mark.parametrize("corners", [3, 4])
 def test_sides_that_bow_this_way_and_that_are_sides(corners: int) -> None:
     at = np.array(ngon(corners, 300, 300, 110) if corners == 3 else box(300, 300, 240, 140, 0.3))
