@@ -34,15 +34,6 @@ static void follow(const double *xy, int first, int step, int n, double reach, C
     }
 }
 
-/* The share of segment ab at which it crosses cd, negative where it does not. */
-static double crossing(const double *a, const double *b, const double *c, const double *d) {
-    double dx = b[0] - a[0], dy = b[1] - a[1], ex = d[0] - c[0], ey = d[1] - c[1], fx = c[0] - a[0], fy = c[1] - a[1];
-    double det = dx * ey - dy * ex;
-    if (det == 0) return -1;
-    double t = (fx * ey - fy * ex) / det, u = (fx * dy - fy * dx) / det;
-    return t >= 0 && t <= 1 && u >= 0 && u <= 1 ? t : -1;
-}
-
 /* Where a course first passes by a point, an end of the other: the index of the course's segment, and how far along. */
 static int passes(const double *xy, const double *end, const Course *c, double *along, double at[2]) {
     double best = INFINITY;

@@ -112,23 +112,11 @@ static void in_steps(const double *xy, int32_t n, double *along, double *line, i
     }
 }
 
-/* Where sides ab and cd cross, if they do. */
-static int crossing(const double *a, const double *b, const double *c, const double *d, double at[2]) {
-    const double ux = b[0] - a[0], uy = b[1] - a[1], vx = d[0] - c[0], vy = d[1] - c[1];
-    const double wx = c[0] - a[0], wy = c[1] - a[1], sine = ux * vy - uy * vx;
-    if (sine == 0) return 0;
-    const double t = (wx * vy - wy * vx) / sine, u = (wx * uy - wy * ux) / sine;
-    if (t < 0 || t > 1 || u < 0 || u > 1) return 0;
-    at[0] = a[0] + t * ux;
-    at[1] = a[1] + t * uy;
-    return 1;
-}
-
 /* Cut off what strokes that cross at a corner have beyond it: loops of a closed line, (n, 2), the smallest first. Returns how
  * many corners are left, or 0 where what goes around twice is no such end. */
 static int without_loops(double *line, int n) {
     for (;;) {
-        double around = 0, least = INFINITY, at[2], there[2] = {0, 0}, upto[COURSE];
+        double around = 0, least = INFINITY, there[2] = {0, 0}, upto[COURSE];
         int first = 0, last = -1, outer = 0;
         for (int i = 0; i < n; i++) {
             const double *a = line + 2 * i, *b = line + 2 * ((i + 1) % n);
@@ -138,7 +126,9 @@ static int without_loops(double *line, int n) {
         for (int i = 0; i < n; i++)
             for (int j = i + 2; j < n; j++) {
                 const double *a = line + 2 * i, *b = a + 2, *c = line + 2 * j, *d = line + 2 * ((j + 1) % n);
-                if ((i == 0 && j == n - 1) || !crossing(a, b, c, d, at)) continue;
+                const double t = crossing(a, b, c, d);
+                if ((i == 0 && j == n - 1) || t < 0) continue;
+                const double at[2] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
                 const double within =
                     upto[j] + hypot(at[0] - c[0], at[1] - c[1]) - upto[i] - hypot(at[0] - a[0], at[1] - a[1]);
                 const double loop = fmin(within, around - within);

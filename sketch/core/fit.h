@@ -96,6 +96,15 @@ static inline double segment_distance2(double px, double py, const double a[2], 
     return ex * ex + ey * ey;
 }
 
+/* The share of segment ab at which it crosses cd, negative where it does not. */
+static inline double crossing(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    double dx = b[0] - a[0], dy = b[1] - a[1], ex = d[0] - c[0], ey = d[1] - c[1], fx = c[0] - a[0], fy = c[1] - a[1];
+    double det = dx * ey - dy * ex;
+    if (det == 0) return -1;
+    double t = (fx * ey - fy * ex) / det, u = (fx * dy - fy * dx) / det;
+    return t >= 0 && t <= 1 && u >= 0 && u <= 1 ? t : -1;
+}
+
 /* As said where they are. */
 INK_API int32_t ink_along(int32_t pieces, const double *boxes, const double *samples, const double *sizes,
                           const double *outline, int32_t n, double reach, double box[4], int32_t *found);
