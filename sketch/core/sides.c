@@ -419,7 +419,9 @@ static void refine_best(const Ink *ink, Found *found) {
 /* Likewise the outline that has arcs, the corners of which are elsewhere. */
 static void refine_arched(const Ink *ink, Found *found) {
     Polygon p = found->arched;
-    if (!(p.arced + p.k * ink->side < ink->round + ROUNDER)) return;
+    double least = ink->round;
+    for (int k = 3; k <= SIDES; k++) least = fmin(least, found->simple[k].cost + k * ink->side);
+    if (!(p.arced + p.k * ink->side < least + MENDS)) return; /* of something round much more could be saved */
     refine(ink, &p, 1);
     take(ink, &p, found);
 }
