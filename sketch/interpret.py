@@ -28,6 +28,7 @@ PIN = 0.02
 # times as long as its ink is a page, at least: one that is cut close to its ink is the same page
 MARGIN = 1.25
 THROUGH = 0.5  # of an X's half extent: a line so near to its middle goes through it
+STRAY = 0.1  # of an outline's extent: ink that is further off it is no hook or overshoot, and is named
 ROUGH = 20.0  # nats that a polygon leaves to be said about its ink: nineteen in twenty clean ones leave less
 
 
@@ -211,7 +212,7 @@ def _gravity(readings: list[Reading], notes: list[str]) -> tuple[float, float]:
 
 
 def _doubts(reading: Reading, name: str) -> list[str]:
-    """What a person should look at: rivals that are nearly as likely, irregular outlines."""
+    """What a person should look at: rivals that are nearly as likely, irregular outlines, ink far off its outline."""
     out = []
     rivals = [(k, p) for k, p in reading.alternatives if p > UNSURE and k != "pivot"]
     if rivals and reading.forced is None:
@@ -222,6 +223,8 @@ def _doubts(reading: Reading, name: str) -> list[str]:
         out.append(f"{name} ({reading.named}) is no clean polygon: {sides} sides come nearest to its ink")
     elif reading.kind == "polygon" and len(reading.outline) > 8:
         out.append(f"{name} ({reading.named}) is an irregular outline: a polygon of many sides")
+    if reading.stray > STRAY * math.hypot(*np.ptp(reading.outline, axis=0).tolist()):
+        out.append(f"{name} ({reading.named}) has ink that is {reading.stray:.0f} pixels off its outline")
     return out
 
 

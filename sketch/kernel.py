@@ -72,7 +72,7 @@ _words = ctypes.CFUNCTYPE(
     ctypes.c_int64, _pointer, _int, *[_pointer] * 3, _double, _double, _pointer, ctypes.c_int64
 )(("ink_words", _lib))
 _cuts = ctypes.CFUNCTYPE(None, *[_pointer] * 2, _int, *[_pointer] * 3)(("ink_cuts", _lib))
-_off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, _pointer)(
+_off_outline = ctypes.CFUNCTYPE(None, _pointer, _pointer, _int, _pointer, _int, _pointer, _pointer)(
     ("ink_off_outline", _lib)
 )
 _is_simple = ctypes.CFUNCTYPE(_int, _pointer, _int)(("ink_is_simple", _lib))
@@ -312,18 +312,20 @@ def course_around(parts: Sequence[Array]) -> Array | None:
     return outline[:count].copy() if count else None
 
 
-def off_outline(strokes: Strokes, names: Sequence[int], outline: Array) -> list[float]:
-    """Mean squared distances of some strokes from a closed outline, (n, 2) [pixels]."""
-    which, off = np.array(names, dtype=np.int32), np.empty(len(names))
+def off_outline(strokes: Strokes, names: Sequence[int], outline: Array) -> tuple[list[float], list[float]]:
+    """Mean squared distances of some strokes from a closed outline, (n, 2), and the greatest ones [pixels²]."""
+    which, off = np.array(names, dtype=np.int32), np.empty((2, len(names)))
     _off_outline(
         address(strokes.samples),
         address(which),
         len(names),
         address(outline),
         len(outline),
-        address(off),
+        address(off[0]),
+        address(off[1]),
     )
-    return off.tolist()
+    mean, greatest = off.tolist()
+    return mean, greatest
 
 
 def place(ink: Array, corners: Array, sides: int, rectangle: bool = False) -> Array | None:

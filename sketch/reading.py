@@ -37,6 +37,7 @@ class Reading:
             [nats].
         rough: nats that a polygon leaves to be said about where its ink is; a clean one leaves ten or so.
         error: standard error of a body's corners, or of its centre and radius [pixels]; 0 for marks.
+        stray: how far a body's ink is off its outline, at most [pixels]; 0 for marks.
         forced: the kind that the caller said it is, or None.
     """
 
@@ -49,6 +50,7 @@ class Reading:
     margin: float = 0.0
     rough: float = 0.0
     error: float = 0.0
+    stray: float = 0.0
     forced: str | None = None
 
     @property

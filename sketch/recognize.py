@@ -288,6 +288,7 @@ class Recognizer:
                     margin=its.margin,
                     rough=c.fit.rough,
                     error=its.place.error,
+                    stray=its.place.stray,
                 )
             )
         return readings

@@ -22,8 +22,8 @@ INK_API int32_t ink_again(int32_t pieces, const double *boxes, const double *sam
         int other = 1;
         for (int j = 0; j < count && other; j++) other = names[j] != i && ink_apart(rivals, from, i, names[j]);
         if (!other) continue;
-        double off;
-        ink_off_outline(samples, &i, 1, outline, n, &off);
+        double off, greatest;
+        ink_off_outline(samples, &i, 1, outline, n, &off, &greatest);
         const double own = piece->scale > 1e-9 ? piece->scale : 1e-9;
         double precision = scale > 0 ? (scale < own ? scale : own) : piece->extent / 2;
         double cost = PARAMETER + RETRACE * piece->observations + misfit_of(piece, off, precision);

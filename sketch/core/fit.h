@@ -109,7 +109,7 @@ static inline double crossing(const double a[2], const double b[2], const double
 INK_API int32_t ink_along(int32_t pieces, const double *boxes, const double *samples, const double *sizes,
                           const double *outline, int32_t n, double reach, double box[4], int32_t *found);
 INK_API void ink_off_outline(const double *samples, const int32_t *names, int32_t count, const double *outline,
-                             int32_t n, double *off);
+                             int32_t n, double *off, double *greatest);
 INK_API int32_t ink_within(const double *samples, int32_t name, const double *triangle, double reach);
 
 #endif

@@ -18,12 +18,13 @@ INK_API int32_t ink_is_simple(const double *v, int32_t n) {
     return 1;
 }
 
-/* Mean squared distances of `count` strokes, those with these names, from a closed outline, (n, 2) [pixels]. */
+/* Mean squared distances of `count` strokes, those with these names, from a closed outline, (n, 2), and the greatest ones
+ * [pixels²]. */
 INK_WIDE INK_API void ink_off_outline(const double *samples, const int32_t *names, int32_t count, const double *outline,
-                                      int32_t n, double *off) {
+                                      int32_t n, double *off, double *greatest) {
     for (int k = 0; k < count; k++) {
         const double *p = samples + 2 * SAMPLES * names[k];
-        double best[SAMPLES], sum = 0;
+        double best[SAMPLES], sum = 0, most = 0;
         for (int i = 0; i < SAMPLES; i++) best[i] = INFINITY;
         for (int q = 0; q < n; q++) {
             const double *a = outline + 2 * q, *b = outline + 2 * ((q + 1) % n);
@@ -36,8 +37,12 @@ INK_WIDE INK_API void ink_off_outline(const double *samples, const int32_t *name
                 best[i] = x * x + y * y < best[i] ? x * x + y * y : best[i];
             }
         }
-        for (int i = 0; i < SAMPLES; i++) sum += best[i];
+        for (int i = 0; i < SAMPLES; i++) {
+            sum += best[i];
+            most = best[i] > most ? best[i] : most;
+        }
         off[k] = sum / SAMPLES;
+        greatest[k] = most;
     }
 }
 

@@ -110,7 +110,7 @@ def read_bar_of_two(page: Page, first: Piece, second: Piece) -> Fitted | None:
     scale = math.sqrt(3) / 4 * long  # half of the extent of a straight line so long
     bowed = 0.5 * square / (STRAIGHT * scale) ** 2
     # each stroke is off it by its own writer's precision: a letter's bar is no part of a floor's side
-    far = off_outline(page.strokes, [first.stroke, second.stroke], line)
+    far, _ = off_outline(page.strokes, [first.stroke, second.stroke], line)
     said = sum(misfit_of(p, its, p.extent / 2) for p, its in zip((first, second), far, strict=True))
     lacking += _again(first) + _again(second)
     cost = RARE + 5 * PARAMETER + said + bowed + lacking  # its two ends, and where the pen was lifted
@@ -123,7 +123,7 @@ def bars_again(page: Page, bar: Fitted, pieces: Sequence[Piece]) -> list[Fitted]
     others = [p for p in pieces if p.index not in bar.pieces and page.apart(p.index, bar.pieces)]
     if not others:
         return []
-    off = off_outline(page.strokes, [p.stroke for p in others], bar.outline)
+    off, _ = off_outline(page.strokes, [p.stroke for p in others], bar.outline)
     said = [
         PARAMETER + RETRACE * p.observations + misfit_of(p, square, p.extent / 2)
         for p, square in zip(others, off, strict=True)

@@ -21,10 +21,12 @@ class Placed(NamedTuple):
     Attributes:
         outline: [pixels], as in `sketch.reading.Reading`.
         error: standard error of a body's corners, or of its centre and radius [pixels]; 0 for marks.
+        stray: how far its ink is off the outline that was fitted to it, at most [pixels]; 0 for marks.
     """
 
     outline: Array
     error: float
+    stray: float
 
 
 def placed(page: Page, fitted: Fitted) -> Placed:
@@ -45,21 +47,24 @@ def placed(page: Page, fitted: Fitted) -> Placed:
         else:
             found = place(ink, outline, sides, kind == "rectangle")
             outline = outline if found is None else found
-    return Placed(outline, _error(page, fitted))
+    return Placed(outline, *_off(page, fitted))
 
 
-def _error(page: Page, c: Fitted) -> float:
-    """The root mean square distance of the ink, times the square root of parameters over independent observations."""
+def _off(page: Page, c: Fitted) -> tuple[float, float]:
+    """The root mean square distance of the ink, times the square root of parameters over independent observations;
+    and the greatest distance."""
     if not (c.closed or c.kind == "bar"):
-        return 0.0
+        return 0.0, 0.0
     pieces = [page.pieces[i] for i in c.pieces]
     if c.kind == "circle":
         radius = math.dist(c.outline[0].tolist(), c.middle)
         off = [np.hypot(*(page.strokes.samples[p.stroke] - c.middle).T) - radius for p in pieces]
         squares = [float(np.add.reduce(d * d)) / len(d) for d in off]
+        greatest = [float(np.maximum.reduce(d * d)) for d in off]
     else:
         around = c.outline if c.closed else np.concatenate([c.outline, c.outline[-2:0:-1]])  # forth and back
-        squares = off_outline(page.strokes, [p.stroke for p in pieces], around)
+        squares, greatest = off_outline(page.strokes, [p.stroke for p in pieces], around)
     square = sum(p.length * d for p, d in zip(pieces, squares, strict=True)) / sum(p.length for p in pieces)
     parameters = {"circle": 3, "ellipse": 5, "rectangle": 5}.get(c.kind, 2 * len(c.outline))
-    return math.sqrt(square * parameters / max(sum(p.observations for p in pieces), parameters))
+    error = math.sqrt(square * parameters / max(sum(p.observations for p in pieces), parameters))
+    return error, math.sqrt(max(greatest))

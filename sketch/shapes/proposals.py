@@ -383,7 +383,7 @@ def _read_chain(page: Page, chain: Chain) -> list[Fitted]:
     out = []
     for f in found:
         if f.cost < free:
-            off = off_outline(page.strokes, strokes, f.outline)
+            off, _ = off_outline(page.strokes, strokes, f.outline)
             # along its own ink an outline of any course says nothing of what is little beside it
             said = (
                 p.unread if f.kind == "free" else min(misfit_of(p, square), p.unread)

@@ -389,7 +389,9 @@ def _count_strays(bench: Bench, tally: Counter[str], drawing: Drawing, strokes: 
     named = set().union(*(r.strokes for r in j.recognition.readings if r.kind == "unread"))
     tally["count"] += 1
     tally["body"] += bool(invented)
-    tally["wrong"] += not all(is_as_drawn(drawing, scene, b) for b in invented)
+    wrong = [b for b in invented if not is_as_drawn(drawing, scene, b)]
+    tally["wrong"] += bool(wrong)
+    tally["unsaid"] += not all(any(note.startswith(f"{b.id} ") for note in scene.notes) for b in wrong)
     tally["changed"] += bool(others)
     tally["silent"] += not stray <= read | named
     if invented or others:
@@ -404,6 +406,7 @@ def _print_strays(title: str, tally: dict[str, Counter[str]]) -> None:
         print(f"  {name:<28}{t['body']:5} {t['wrong']:5} {t['changed']:5} of {t['count']:4}")
     print(f"  {'a body':<28}{rate(every['body'], every['count'])}")
     print(f"  {'a body, and not as drawn':<28}{rate(every['wrong'], every['count'])}")
+    print(f"  {'likewise, and unsaid':<28}{rate(every['unsaid'], every['count'])}")
     print(f"  {'anything else changed':<28}{rate(every['changed'], every['count'])}")
     print(f"  {'neither read nor named':<28}{rate(every['silent'], every['count'])}")
 

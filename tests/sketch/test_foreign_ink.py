@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -148,3 +149,18 @@ def test_a_bow_that_is_half_open_is_nothing_round(width: float) -> None:
     t = np.linspace(-2, 2, 40)
     bow = np.stack([500 + width * np.cos(t), 400 + 55 * np.sin(t)], axis=1)
     assert recognize(page([bow])).scene.bodies == []
+
+
+@pytest.mark.parametrize(("beyond", "named"), [(8.0, False), (60.0, True)])
+def test_ink_that_runs_far_beyond_an_outline_is_named(beyond: float, named: bool) -> None:
+    ends = [(100, 100), (300, 100), (300, 260), (100, 260), (100, 100 - beyond)]
+    sides = [np.linspace(a, b, 20) for a, b in itertools.pairwise(ends)]
+    scene = recognize(Sketch([Stroke(s) for s in sides], 640, 480)).scene
+    assert [len(b.outline()) for b in scene.bodies] == [4]
+    said = [note for note in scene.notes if "off its outline" in note]
+    assert bool(said) == named
+    for note in said:
+        name, off = note.split(" has ink that is ")
+        assert name == "b1 (strokes 0, 1, 2, 3)"
+        # ink is seen at 48 places a stroke, none of which is its end
+        assert float(off.split()[0]) == pytest.approx(beyond, rel=0.05)

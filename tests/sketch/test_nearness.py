@@ -127,13 +127,13 @@ def test_ink_along_an_outline_and_its_distance() -> None:
     own, scale = len(ink.pieces) - 1, 40.0  # the last is what the outline is of
     again = ink.again(ring, 30.0, (own,), scale)
     off = off_outline(ink.strokes, list(ink.pieces), ring)
-    for p, square in zip(ink.pieces.values(), off, strict=True):
+    for p, square, greatest in zip(ink.pieces.values(), *off, strict=True):
         samples = ink.strokes.samples[p.index]
         sides = np.roll(ring, -1, axis=0) - ring
         to = samples[:, None] - ring
         share = np.clip((to * sides).sum(axis=2) / (sides**2).sum(axis=1), 0, 1)
         d2 = ((to - share[..., None] * sides) ** 2).sum(axis=2).min(axis=1)
-        assert square == pytest.approx(d2.mean())
+        assert (square, greatest) == pytest.approx((d2.mean(), d2.max()))
         x0, y0, x1, y1 = p.box
         inside = min(x0, y0) >= 150 - 170 and max(x1, y1) <= 150 + 170
         places = math.sqrt(d2[[0, 16, 31, 47]].mean()) < 0.3 * max(p.scale, p.extent / 2)
