@@ -23,8 +23,6 @@ USUAL = 0.025  # of what is drawn: the extent of a letter beside a machine
 SPREAD = 0.15  # of the logarithm of a letter's extent, where that is larger than usual
 LARGEST = 0.1  # of what is drawn: no letter is of a larger extent
 NAIL = 0.04  # of what is drawn: the extent of a ring that may be a pin
-# times as large as a ring is a letter that it is a part of, at most, as a "d" is: what is larger is pinned by it
-HOLDS = 2.5
 SURER = 10.0  # nats, at most, that a letter gains beyond an X of its ink: a body under that says more for it
 # nats that an X in two strokes leaves to be said about its ink: 99 in 100 of people's leave less, an "f", a "4" and a
 # crossed "7" more
@@ -116,11 +114,7 @@ class Letters:
         gain = max([gain, *(min(gain + rough, its + SURER + odd) for its, rough, odd in whole)])
         if gain <= 0:
             return None
-        rings = [
-            (i, self._alone[of[i]][1])
-            for i in group
-            if small[i] < NAIL * page.drawn and (len(group) == 1 or extent > HOLDS * small[i])
-        ]
+        rings = [(i, self._alone[of[i]][1]) for i in group if small[i] < NAIL * page.drawn]
         marks = [of[i].candidates[k] for i, k in (*rings, *ring, *crosses) if k >= 0]
         return Letter(proposing([Fitted("letter", group, 0.0, NOWHERE)], [gain]), tuple(marks))
 

@@ -157,3 +157,14 @@ def test_a_ring_aside_of_a_wheel_s_middle_joins_it_to_what_it_all_but_reaches(se
     scene = read(frame, *wheels, free, rings).scene
     assert len(scene.bodies) == 4
     assert [joint.bodies for joint in scene.joints] == [("b1", "b2"), ("b1", "b3"), ("b4", None)]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_pin_with_a_stray_dash_is_no_letter(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    beam = outline(box(640, 200, 420, 60), HAND, rng) + cross((760, 200), 24, HAND, rng)
+    rod = outline(box(600, 360, 40, 360), HAND, rng)
+    pin = circle((600, 205), 12, HANDS["neat"], rng) + line([(610.8, 211.6), (625.8, 207.4)], MARK, rng)
+    scene = read(beam, rod, pin, arrow((1150, 120), (1150, 240), HAND, rng)).scene
+    assert [joint.bodies for joint in scene.joints] == [("b1", "b2")]
+    assert [b.anchored for b in scene.bodies] == [True, False]
