@@ -37,7 +37,6 @@ PLAIN = 0.5  # of the nats of its free ink: an outline said in less is tried as 
 APART = 0.2  # of its length: a stroke whose ends are further apart is no outline by itself
 CLOSED = 0.04  # of its ink: what is missing, at most, of an outline that needs no other ink
 NEARLY = 0.1  # likewise, of one that needs none but what closes it
-TIGHTER = 0.5  # of what is missing of it: what is missing, at most, once it is closed
 NARROW = 0.2  # of its extent: the shorter half axis of an outline that is narrow
 WELL_SAID = 0.6  # of the nats of its free ink: an outline that is said in less is complete, though narrow
 MEANT = 4.0  # nats that a reading is to save: less would be luck, as so many are tried
@@ -281,8 +280,8 @@ class Proposals:
             group = frozenset(i for i, _ in chain)
             if any(closed < group and tight + WIDE < gap for tight, closed in whole):
                 continue
-            if len(chain) > 1 and gap > TIGHTER * min(self._alone[i].gapes for i in group):
-                continue
+            if len(chain) > 1 and gap > min(self._alone[i].gapes for i in group):
+                continue  # one of them lacks less by itself
             if len(chain) == 1 and alone.outlines:
                 found = alone.outlines
             else:

@@ -7,7 +7,7 @@ import pytest
 from pages import box, page
 
 from sketch import recognize
-from sketch.synthetic import HANDS, cross, line
+from sketch.synthetic import HANDS, Hand, cross, line, outline
 
 NEAT = HANDS["neat"]
 
@@ -32,6 +32,23 @@ def test_the_last_of_an_outline_in_a_stroke_of_its_own_belongs_to_it(
         strokes = [line(path, NEAT, rng) for path in cut_at(share, box(500, 300, *size))]
         (reading,) = recognize(page(*strokes)).readings
         assert (reading.kind, reading.strokes) == ("rectangle", (0, 1))
+
+
+@pytest.mark.parametrize(("missing", "beyond"), [(0.21, 0.0), (0.3, 0.15)])
+def test_a_gap_that_a_further_stroke_closes_is_a_part_of_the_outline(missing: float, beyond: float) -> None:
+    """That stroke goes along a triangle's first side, up to its top or beyond it by a share of that side."""
+    floor, quick = (
+        box(640, 600, 1200, 50),
+        Hand(tremor=0.004, drift=0.01, rounding=0.03, spacing=0.05, unsteady=0.5),
+    )
+    top, left, right = np.array([[640.0, 290.0], [600.0, 360.0], [675.0, 365.0]])
+    begins, ends = top + missing * (left - top), top + 0.05 * (right - top)
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        ink = line([tuple(p) for p in (begins, left, right, ends)], quick, rng)
+        added = line([tuple(begins), tuple(top - beyond * (left - top))], Hand(spacing=0.2), rng)
+        readings = recognize(page(outline(floor, quick, rng), ink, added)).readings
+        assert [len(r.outline) for r in readings] == [4, 3]
 
 
 @pytest.mark.parametrize("top", [80, 100, 120])
