@@ -83,29 +83,21 @@ static Closing crossed(const double *xy, const Course *head, const Course *tail,
     return found;
 }
 
-/* The stroke without those of its ends, beyond a closing, that run on within it. Returns the number of points, 0 if neither
- * does. */
-static int32_t without_inner(const double *xy, int32_t n, const Closing *c, double *ring, double *tails) {
+/* The stroke between where it closes and there again. Returns the number of points, 0 if nothing runs on beyond. */
+static int32_t without_ends(const double *xy, int32_t n, const Closing *c, double *ring, double *tails) {
     int first = c->first, last = c->last;
-    if (last < first + 2) return 0;
-    memcpy(ring, c->at, sizeof c->at);
-    memcpy(ring + 2, xy + 2 * first, 2 * (size_t)(last - first + 1) * sizeof *xy);
-    int32_t count = last - first + 2;
-    int head = first > 0 && ink_depth(xy[0], xy[1], ring, count) < 0;
-    int tail = last < n - 1 && ink_depth(xy[2 * n - 2], xy[2 * n - 1], ring, count) < 0;
-    if (!head && !tail) return 0;
-    *tails = (head ? c->before : 0) + (tail ? c->after : 0);
-    if (!head) first = 0;
-    if (!tail) last = n - 1;
+    if (last < first + 2 || (first == 0 && last == n - 1)) return 0;
+    const int head = first > 0;
+    *tails = c->before + c->after;
     memcpy(ring + 2 * head, xy + 2 * first, 2 * (size_t)(last - first + 1) * sizeof *xy);
+    if (head) memcpy(ring, c->at, sizeof c->at);
     if (!head) memcpy(ring + 2 * (last - first + 1), c->at, sizeof c->at);
     return last - first + 2;
 }
 
 /* xy: a stroke's points [pixels], (n, 2).  length: of it.
- * Out: ring: (n + 1, 2), the stroke from where its two ends cross, or one passes by the other, on, without an end that runs on
- * within it: what runs on outward goes on along a side, and reaches over its corner.  tails: length of what is left out.
- * Returns the number of the ring's points, 0 where there is none. */
+ * Out: ring: (n + 1, 2), the stroke from where its two ends cross, or one passes by the other, up to there again.  tails:
+ * length of what is left out.  Returns the number of the ring's points, 0 where there is none. */
 INK_API int32_t ink_ring(const double *xy, int32_t n, double length, double *ring, double *tails) {
     Course head, tail;
     if (n < 4) return 0;
@@ -113,14 +105,14 @@ INK_API int32_t ink_ring(const double *xy, int32_t n, double length, double *rin
     follow(xy, 0, 1, n, most, &head);
     follow(xy, n - 1, -1, n, most, &tail);
     Closing c = crossed(xy, &head, &tail, most);
-    int32_t count = without_inner(xy, n, &c, ring, tails);
+    int32_t count = without_ends(xy, n, &c, ring, tails);
     if (count > 0) return count;
     c = (Closing){{0, 0}, 0, 0, 0, n - 1};
     int j = passes(xy, xy, &tail, &c.after, at);
     if (j >= 0 && c.after < most) {
         memcpy(c.at, at, sizeof at);
         c.last = tail.at[j + 1];
-        count = without_inner(xy, n, &c, ring, tails);
+        count = without_ends(xy, n, &c, ring, tails);
         if (count > 0) return count;
     }
     c = (Closing){{0, 0}, 0, 0, 0, n - 1};
@@ -128,5 +120,5 @@ INK_API int32_t ink_ring(const double *xy, int32_t n, double length, double *rin
     if (j < 0 || !(c.before < most)) return 0;
     memcpy(c.at, at, sizeof at);
     c.first = head.at[j + 1];
-    return without_inner(xy, n, &c, ring, tails);
+    return without_ends(xy, n, &c, ring, tails);
 }

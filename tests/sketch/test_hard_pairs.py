@@ -294,6 +294,14 @@ def test_what_runs_on_within_a_closed_outline_is_no_side(past: float, back: bool
     assert kinds(read([ink[::-1] if back else ink])) == ["4-gon"]
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_what_runs_on_out_of_a_closed_outline_is_no_side(seed: int) -> None:
+    """A hasty box is no more of any course for its stroke's beginning far out."""
+    corners = [(333.0, 256.0), (300.0, 300.0), (300.0, 450.0), (390.0, 450.0), (390.0, 300.0), (303.0, 300.0)]
+    ink = line(corners, replace(HANDS["quick"], parts=(1,)), np.random.default_rng(seed))
+    assert kinds(read(ink)) == ["4-gon"]
+
+
 @hands
 def test_bodies_that_share_a_drawn_side(hand, rng) -> None:
     first = outline(box(300, 300, 200, 140), hand, rng)
