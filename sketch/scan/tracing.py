@@ -81,7 +81,7 @@ def _strokes(chains: Chains, seen: Seen) -> list[Stroke]:
     plain = ways.likeliest() + rings.certain + rings.doubtful
     likeliest = [_drawn(way, seen) for way in plain]
     if ways.is_net:
-        return _drawn_as(likeliest)
+        return _drawn_as(likeliest, pen * seen.scale)
     stretches = Stretches({name: points for edge in graph.edges for name, points in edge.ink.items()}, pen)
     others = [_drawn(way, seen) for way in with_all_ink(ways.others(), stretches)]
     within = _in_tangles(rings.tangles, likeliest + others, pen)
@@ -93,7 +93,7 @@ def _strokes(chains: Chains, seen: Seen) -> list[Stroke]:
     others += [_drawn(way, seen) for way in going_on(plain, distance, pen)]
     others += [_drawn(way, seen) for way in crossed(drawn, plain, distance, pen)]
     if not others and not overlaps:
-        return _drawn_as(likeliest)
+        return _drawn_as(likeliest, pen * seen.scale)
     height, width = mask.shape
     ends = lines(likeliest + others + overlaps, pen * seen.scale)
     canvas = width * seen.scale, height * seen.scale
@@ -102,9 +102,8 @@ def _strokes(chains: Chains, seen: Seen) -> list[Stroke]:
     left = [ring for ring in rings.certain if (used & ends.keys()).isdisjoint(ring.ink)]
     others = [_drawn(way, seen) for way in ways.likeliest(without=used) + left]
     remains = remaining(others, chosen, drawn, seen.scale)
-    return _drawn_as(chosen + [way for way in others if way not in remains]) + _drawn_as(
-        remains, remains=True
-    )
+    kept = chosen + [way for way in others if way not in remains]
+    return _drawn_as(kept, pen * seen.scale) + _drawn_as(remains, pen * seen.scale, remains=True)
 
 
 class _Rings(NamedTuple):
@@ -165,10 +164,24 @@ def _spaced(points: Points, apart: float) -> Points:
     return points if step < 2 else np.concatenate([points[:-1:step], points[-1:]])
 
 
-def _drawn_as(ways: list[Way], *, remains: bool = False) -> list[Stroke]:
-    """The ways as strokes; a single place is none. remains: whether they are what others left of their ink."""
-    strokes = [Stroke(way.points, remains=remains) for way in ways]
+def _drawn_as(ways: list[Way], pen: float, *, remains: bool = False) -> list[Stroke]:
+    """The ways as strokes; a single place is none. remains: whether they are what others left of their ink.
+
+    pen: its width, in the pixels of the ways.
+    """
+    strokes = [Stroke(_ended(way.points, pen), remains=remains) for way in ways]
     return [stroke for stroke in strokes if stroke.has_length]
+
+
+def _ended(points: Points, pen: float) -> Points:
+    """A stroke; a closed one that turns back so sharply where it begins that a pen's width away both its ends are still
+    in the same ink, without that last bit: a tail's tip is no place where an outline closes."""
+    off = np.hypot(*(points - points[0]).T)
+    away = np.flatnonzero(off > pen)
+    if off[-1] > 0 or not len(away):
+        return points
+    first, last = points[away[[0, -1]]].tolist()
+    return points[: away[-1] + 1] if math.dist(first, last) < pen else points
 
 
 def smooth(points: Points, sigma: float) -> Points:

@@ -124,6 +124,14 @@ def test_a_short_side_that_closes_an_outline_is_no_hook(seed: int, name: str) ->
     assert kinds(read(outline(corners, hand, np.random.default_rng(seed)))) == ["8-gon"]
 
 
+@pytest.mark.parametrize("start", range(8))
+def test_a_short_side_that_leads_back_to_the_very_beginning_is_no_hook(start: int) -> None:
+    """A trough as programs write it: its ends are one place."""
+    v = [(-100, -100), (-60, -100), (-60, 70), (60, 70), (60, -100), (100, -100), (100, 120), (-100, 120)]
+    around = np.array([*v[start:], *v[: start + 1]], dtype=float) + 400
+    assert kinds(read([around])) == kinds(read([around[::-1]])) == ["8-gon"]
+
+
 @pytest.mark.parametrize("seed", [433, 691])
 def test_a_box_whose_one_corner_is_cut_round_has_four_sides(seed: int) -> None:
     rng = np.random.default_rng(seed)

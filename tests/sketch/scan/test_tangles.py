@@ -56,6 +56,16 @@ def test_a_ball_on_the_tip_of_a_ramp_is_no_figure_of_eight(pen: float) -> None:
     assert kinds(scene) == ["3 sides", "circle"]
 
 
+@pytest.mark.parametrize("turn", np.arange(0.0, 6.2, 0.8))
+def test_a_tail_beside_an_outline_is_no_part_of_it(turn: float) -> None:
+    """A hasty ball, whose end is closed along its tail: the tip of that is where its stroke begins."""
+    tail = [(-29, -3), (-22, -11), (-17, -16), (-11, -21), (-5, -22), (4, -23), (10, -22)]
+    ball = [(16, -18), (20, -12), (22, -5), (23, 3), (22, 10), (19, 18), (15, 24), (9, 27), (6, 27), (0, 23)]
+    back = [(-6, 18), (-11, 12), (-16, 3), (-18, -3), (-20, -10)]
+    at = np.array([*tail, *ball, *back]) @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+    assert kinds(read([[(x, y) for x, y in (at + 200).tolist()]], 3.4)) == ["circle"]
+
+
 @pytest.mark.parametrize("pen", PENS)
 def test_a_ball_on_an_overshot_corner_is_no_large_x_with_a_loop(pen: float) -> None:
     apex, left, right, over = np.array([255.0, 200]), np.array([80.0, 360]), np.array([440.0, 364]), 70.0
