@@ -22,7 +22,7 @@ import numpy as np
 
 from sim.scene import InputError, Scene
 from sketch.around.arrows import pointing
-from sketch.around.context import Context, held_ends, linked
+from sketch.around.context import Context, grounds, held_ends, linked
 from sketch.around.writing import written
 from sketch.explain import explain
 from sketch.ink import Sketch, Stroke
@@ -252,6 +252,8 @@ class Recognizer:
             for n, lines in held.items():
                 parts[n] = kept(linked, every[n], lines)
             likely = [kept(Likely, *its) for its in zip(every, _picked(kept, ways, parts, sure), strict=True)]
+        for n, lines in grounds(likely).items():
+            likely[n] = kept(Likely, every[n], (*likely[n].which, *lines))
         wholes = [patch.whole for patch in every]
         told = self._context.told(likely, held, page.size, page.drawn)
         told, elsewhere, pointers = pointing(page, likely, told, count, kept)

@@ -20,7 +20,7 @@ from sketch.search import Part, part
 from sketch.shapes.proposals import Pick, Proposed, Row
 from sketch.typing import Array, Point
 
-__all__ = ["Context", "held_ends", "linked"]
+__all__ = ["Context", "grounds", "held_ends", "linked"]
 
 Around = dict[Fitted, Row]  # bodies and marks, each with where it is
 Gaps = dict[tuple[Fitted, Fitted], tuple[float, Point]]  # of open lines: how wide [pixels], and where
@@ -149,6 +149,23 @@ def linked(patch: Patch, held: tuple[Held, ...]) -> Part:
     for k, c in enumerate(whole.candidates):
         gains[k] -= HELD * _corners(c, ends)
     return part([c.pieces for c in whole.candidates], gains)
+
+
+def grounds(likely: Sequence[Likely]) -> dict[int, tuple[int, ...]]:
+    """Of each patch the open lines of ink that by itself means nothing, and on which a likely X stands."""
+    crosses = [mark for own in likely for mark in own.bodies if mark[0].kind == "cross"]
+    found: dict[int, tuple[int, ...]] = {}
+    for n, own in enumerate(likely) if crosses else ():
+        whole, taken = own.patch.whole, {i for c, _ in own.chosen for i in c.pieces}
+        for k in sorted(whole.bars, key=lambda k: -whole.gains[k]):
+            line = whole.candidates[k]
+            if not taken.isdisjoint(line.pieces):
+                continue
+            course = whole.course(line)
+            if any(stands_on(cross, row[4], line, *course) for cross, row in crosses):
+                found[n] = (*found.get(n, ()), k)
+                taken.update(line.pieces)
+    return found
 
 
 def _corners(outline: Fitted, ends: Mapping[int, Ends]) -> int:

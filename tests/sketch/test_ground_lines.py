@@ -162,3 +162,17 @@ def test_a_box_of_four_strokes_with_an_x_in_it_is_a_box(seed: int) -> None:
     marks = [cross((x, 440), 40, HAND, rng) for x in (380, 820)]
     scene = read(*sides, *marks, circle((600, 200), 50, HAND, rng), fall(rng)).scene
     assert [body.anchored for body in scene.bodies] == [True, False]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_an_x_on_a_line_that_bends_sharply_fixes_it(seed: int) -> None:
+    """A funnel's sides and a bin, which by themselves are no rods; and an X by itself is no mark."""
+    rng = np.random.default_rng(seed)
+    left = line([(340, 150), (590, 380), (592, 480)], HAND, rng)
+    right = line([(940, 150), (690, 380), (688, 480)], HAND, rng)
+    bin_ = line([(480, 540), (484, 690), (800, 690), (804, 540)], HAND, rng)
+    marks = [cross(at, 28, HAND, rng) for at in ((465, 265), (815, 265), (600, 690))]
+    scene = read(left, marks[0], right, marks[1], bin_, marks[2], circle((640, 200), 30, HAND, rng)).scene
+    assert [body.anchored for body in scene.bodies] == [True, True, True, False]
+    assert len(scene.bodies) == 4
+    assert not any("left out" in note for note in scene.notes)
