@@ -252,8 +252,8 @@ class Recognizer:
             for n, lines in held.items():
                 parts[n] = kept(linked, every[n], lines)
             likely = [kept(Likely, *its) for its in zip(every, _picked(kept, ways, parts, sure), strict=True)]
-        for n, lines in grounds(likely).items():
-            likely[n] = kept(Likely, every[n], (*likely[n].which, *lines))
+        for n, ground in grounds(likely).items():
+            likely[n] = kept(Likely, every[n], (*likely[n].which, *ground))
         wholes = [patch.whole for patch in every]
         told = self._context.told(likely, held, page.size, page.drawn)
         told, elsewhere, pointers = pointing(page, likely, told, count, kept)

@@ -12,7 +12,7 @@ from sketch.kernel import depth, gap
 from sketch.scoring import Fitted
 from sketch.typing import Array
 
-__all__ = ["PINNED", "REACH", "is_on_line", "is_over", "stands_on"]
+__all__ = ["PINNED", "REACH", "follows", "is_on_line", "is_over", "stands_on"]
 
 # times as large as a pivot is an open line that it joins, at least: the stem of an "a" is shorter
 PINNED = 3.0
@@ -21,6 +21,8 @@ REACH = 0.5
 # of a ring's extent: a line so near to its middle goes through it, and is no ground that it lies on
 THROUGH = 0.25
 ON_LINE = 0.5  # of an X's extent: a line that goes by its middle as near as that is what it stands on
+# of its extent: nineteen in twenty straight lines are nowhere further off
+OFF = 0.04
 LARGER = 2.0  # times as large as an X is a line that it stands on, at least: else it is an asterisk
 
 
@@ -59,6 +61,15 @@ def stands_on(cross: Fitted, extent: float, line: Fitted, course: Array, row: Se
     if not set(line.pieces).isdisjoint(cross.pieces):
         return False
     return gap(np.array([cross.middle, cross.middle]), course)[0] < reach
+
+
+def follows(line: Fitted, course: Array, row: Sequence[float]) -> bool:
+    """Whether a line is what was drawn, and leaves out no bend or end of it that is no slip of the hand.
+
+    course, row: as of `stands_on`.
+    """
+    legs = list(pairwise(line.outline.tolist()))
+    return all(min(_distance(at, *leg) for leg in legs) < OFF * row[4] for at in course.tolist())
 
 
 def _distance(at: Sequence[float], a: Sequence[float], b: Sequence[float]) -> float:

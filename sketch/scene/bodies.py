@@ -116,9 +116,9 @@ def drawn_body(
     line = np.frombuffer(corners).reshape(-1, 2).copy()
     outline = line
     if kind == "bar":
-        outline = thick(line, pen)
-        if not is_simple(outline):  # a line that turns within its own thickness
-            outline = thick(line[[0, -1]], pen)
+        # a line that turns within its own thickness is thinner
+        tried = (thick(line, pen / thinner) for thinner in (1, 2, 4, 8))
+        outline = next(filter(is_simple, tried), thick(line[[0, -1]], pen))
     world = [complex(x, -y) / pixels_per_metre for x, y in outline.tolist()]
     angle = 0.0
     area, middle = _moments(world)
