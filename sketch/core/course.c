@@ -10,6 +10,7 @@ enum {
 }; /* sides that it is drawn with at most, and places along it where it may close */
 static const double CLOSE =
     0.002; /* of its extent: ink that is no further off is followed; so is a circle with 32 sides */
+static const double LOOSE = 0.02; /* likewise: what is off by more was drawn, and no slip where the pen turned */
 static const double LOOP =
     0.1; /* of an outline's length: what two strokes have beyond the corner where they cross is less */
 
@@ -56,15 +57,16 @@ static int farthest(const double *xy, int from, int to, double *far) {
 }
 
 /* The corners of a polyline: its ends, and then always the point that is farthest from the line so far, until none is far or
- * there are `most` sides (after Ramer 1972). xy: (n, 2).  Out: line: (most + 1, 2). Returns how many points it has. */
-static int with_few_sides(const double *xy, int n, int most, double *line) {
+ * there are `most` sides (after Ramer 1972). xy: (n, 2).  near: how near, as a share of its extent.  Out: line:
+ * (most + 1, 2). Returns how many points it has. */
+static int with_few_sides(const double *xy, int n, int most, double near, double *line) {
     int at[COURSE + 1] = {0, n - 1}, next[COURSE], sides = 1;
     double off[COURSE], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int i = 0; i < 2 * n; i++) {
         low[i % 2] = fmin(low[i % 2], xy[i]);
         high[i % 2] = fmax(high[i % 2], xy[i]);
     }
-    const double close = CLOSE * hypot(high[0] - low[0], high[1] - low[1]);
+    const double close = near * hypot(high[0] - low[0], high[1] - low[1]);
     next[0] = farthest(xy, 0, n - 1, &off[0]);
     while (sides < most) {
         int worst = 0;
@@ -90,9 +92,12 @@ static int with_few_sides(const double *xy, int n, int most, double *line) {
  * Out: line: room for (COURSE + 1, 2). Returns how many points it has, or 0 where it crosses itself. */
 INK_API int32_t ink_course(const double *xy, int32_t n, double pen, double *line) {
     double outline[4 * (COURSE + 1)];
-    const int count = with_few_sides(xy, n, COURSE, line);
-    thicken(line, count, pen, outline);
-    return ink_is_simple(outline, 2 * count) ? count : 0;
+    for (double near = CLOSE; near < LOOSE; near *= 2) { /* as near as it can be followed without crossing */
+        const int count = with_few_sides(xy, n, COURSE, near, line);
+        thicken(line, count, pen, outline);
+        if (ink_is_simple(outline, 2 * count)) return count;
+    }
+    return 0;
 }
 
 /* Places in equal steps along a polyline, the first and the last at its ends: line is (count, 2).  along: room for n lengths. */
@@ -178,7 +183,7 @@ INK_API int32_t ink_course_around(const double *xy, int32_t n, int32_t several, 
         if (along[i] > begin && along[i] < end) memcpy(once + 2 * ++count, xy + 2 * i, 2 * sizeof *once);
     memcpy(once + 2 * ++count, dense + 2 * last, 2 * sizeof *once);
     memcpy(once + 2 * ++count, once, 2 * sizeof *once); /* and back to where it begins */
-    int corners = with_few_sides(once, count + 1, COURSE, line) - 1;
+    int corners = with_few_sides(once, count + 1, COURSE, CLOSE, line) - 1;
     if (several) corners = without_loops(line, corners); /* one that crosses itself is no outline */
     memcpy(outline, line, 2 * (size_t)corners * sizeof *line);
     return corners > 2 && ink_is_simple(outline, corners) ? corners : 0;

@@ -189,6 +189,15 @@ def test_a_course_has_its_corners_where_the_ink_turns() -> None:
     np.testing.assert_allclose(course_around([np.concatenate([*sides, step[:1]])]), step)
 
 
+def test_a_course_leaves_out_a_loop_that_is_no_larger_than_a_slip() -> None:
+    """Where a pen turns a corner; one that is larger was drawn, and nothing runs through itself."""
+    t = np.linspace(0, 1, 70)[:, None]
+    for loop, points in ((3.0, 3), (40.0, 0)):
+        turns = [(0, 0), (300, 0), (300 + loop, loop), (300 + loop, -loop), (300 - loop, -loop), (300, 300)]
+        line = course(np.concatenate([a + t * (b - a) for a, b in itertools.pairwise(np.array(turns))]), 2.0)
+        assert (0 if line is None else len(line)) == points
+
+
 def test_a_course_of_something_round_is_close_to_it_with_few_sides() -> None:
     t = np.linspace(0, 2 * math.pi, 400)
     hills = 100 * (1 + 0.3 * np.cos(5 * t))[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1)
