@@ -192,3 +192,18 @@ def test_a_shelf_keeps_the_stop_at_its_end(seed: int) -> None:
     corners = (np.array(shape.vertices) + np.array(at)) * (128, -128)
     for drawn in (stop, end):
         assert np.hypot(*(corners - drawn).T).min() < 12
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_rope_along_a_wedge_is_no_slip_at_it(seed: int) -> None:
+    """From a block on it to the wheel at its top, a block's half height off, and down from there: none of it is
+    pinned."""
+    rng = np.random.default_rng(seed)
+    wedge = outline([(220, 640), (850, 640), (850, 330)], HAND, rng) + cross((740, 590), 36, HAND, rng)
+    wheel = circle((860, 322), 46, HANDS["neat"], rng)
+    block = outline(box(590, 415, 100, 72, -0.457), HAND, rng)
+    ropes = [line([(636, 392), (840, 280)], HAND, rng), line([(906, 322), (906, 520)], HAND, rng)]
+    load = outline(box(906, 556, 80, 72), HAND, rng)
+    scene = read(wedge, wheel, block, *ropes, load, fall(rng)).scene
+    assert len(scene.bodies) == 6
+    assert not any("left out" in note for note in scene.notes)
