@@ -67,7 +67,9 @@ def _color(reading: Reading, nth: int) -> RGB:
 
 def _draw_reading(page: _Page, reading: Reading, color: RGB, strokes: list[Array]) -> None:
     v = reading.outline
-    if reading.kind in BODIES:
+    if reading.kind == "bar":
+        page.lines(v, color)
+    elif reading.kind in BODIES:
         page.tint(v, color, 0.16)
         page.lines(v, color, closed=True)
     elif reading.kind == "anchor" and len(v) >= 4:

@@ -198,6 +198,15 @@ def test_overlay_shows_unread_ink_in_the_signal_colour() -> None:
     assert near.min() < 30
 
 
+def test_overlay_leaves_a_bent_bar_open() -> None:
+    corners = np.array([(40.0, 160.0), (40.0, 40.0), (160.0, 40.0)])
+    ink = Sketch([Stroke(corners)], 200, 200)
+    picture = overlay(Recognition(ink, Scene(), [Reading("bar", (0,), 1.0, corners)])).planes[0]
+    paper = picture[190, 190]
+    assert np.all(picture[95:105, 95:105] == paper)  # on the way from end to end
+    assert np.any(picture[100, 35:46] != paper)
+
+
 def test_overlay_reduces_large_pictures_and_keeps_their_form() -> None:
     ink = Sketch([], 4000, 1000, picture=np.full((1000, 4000, 3), 200, np.uint8))
     assert overlay(Recognition(ink, Scene(), [])).planes[0].shape == (400, 1600, 3)
