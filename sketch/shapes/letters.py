@@ -4,12 +4,12 @@ written."""
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
 
-from sketch.kernel import words
+from sketch.kernel import depth, words
 from sketch.page.pieces import Page
 from sketch.scoring import PARAMETER, Fitted
 from sketch.shapes.proposals import MEANT, Proposed, proposing
@@ -46,8 +46,8 @@ class Letter:
 
     Attributes:
         proposed: that reading, and what it gains.
-        marks: readings of its strokes as small rings, or as an X with short ink besides: where one of them is a mark,
-            there is no letter.
+        marks: readings of its strokes as small rings, or as an X with short ink besides, or within an outline: where
+            one of them is a mark, there is no letter.
     """
 
     proposed: Proposed
@@ -146,8 +146,9 @@ def _alone(proposed: Proposed, index: int, may_pin: bool) -> tuple[bool, int, li
 def _crosses(
     of: Mapping[int, Proposed], group: Sequence[int], small: Mapping[int, float]
 ) -> tuple[list[tuple[int, int]], list[tuple[float, float, float]]]:
-    """Readings of some pieces as an X that the others are short beside: which piece proposed it, and which it is; and
-    of each X of all pieces what it gains, what it leaves to be said of its ink, and how odd an X it is [nats].
+    """Readings of some pieces as an X that the others are short beside, or go around: which piece proposed it, and
+    which it is; and of each X of all pieces what it gains, what it leaves to be said of its ink, and how odd an X it is
+    [nats].
 
     of: what the pieces propose.  small: their extents [pixels].
     """
@@ -158,9 +159,18 @@ def _crosses(
                 rest, least = every.difference(c.pieces), min(small[j] for j in c.pieces)
                 if not rest:
                     whole.append((gain, c.rough, _odd(c)))
-                elif all(small[j] < SHORT * least for j in rest):
+                elif all(small[j] < SHORT * least for j in rest) or _is_held(of, c, rest):
                     found.append((i, k))
     return found, whole
+
+
+def _is_held(of: Mapping[int, Proposed], cross: Fitted, rest: Set[int]) -> bool:
+    """Whether some pieces are an outline around an X."""
+    for i in rest:
+        for c, gain in zip(of[i].candidates, of[i].gains, strict=True):
+            if c.closed and gain > 0 and set(c.pieces) == rest and depth(*cross.middle, c.outline) < 0:
+                return True
+    return False
 
 
 def _odd(cross: Fitted) -> float:

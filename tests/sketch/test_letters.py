@@ -98,3 +98,18 @@ def test_an_h_in_a_body_is_no_anchor(seed: int) -> None:
     assert [b.anchored for b in read(frame, *stems, bar).scene.bodies] == [False, False]
     small = cross((500, 405), 40, HAND, rng)
     assert [b.anchored for b in read(frame, small).scene.bodies] == [True, False]
+
+
+@pytest.mark.parametrize("size", [16, 18])
+def test_a_small_rough_ring_around_an_x_is_no_letter(size: float) -> None:
+    """A peg: a stroke each, and said together in fewer words as a letter."""
+    t, pegs = np.linspace(-1.9, 4.9, 50), 0
+    spiral = np.linspace(0.68, 1.1, 50)[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1)
+    looped = np.array([(-0.6, -0.65), (0.65, 0.6), (0.8, -0.5), (-0.6, 0.65)])
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        ring, x = (curve((300, 300) + size * way, HAND, rng) for way in (spiral, looped))
+        floor, ball = outline(box(640, 640, 900, 60), HAND, rng), circle((600, 120), 26, HAND, rng)
+        bodies = read(ring, x, floor, ball, arrow((1150, 120), (1150, 240), HAND, rng)).scene.bodies
+        pegs += [body.anchored for body in bodies] == [True, False, False]
+    assert pegs > 6
