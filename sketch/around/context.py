@@ -256,7 +256,7 @@ def _told(proposed: Proposed, bodies: _Bodies, size: float, drawn: float) -> lis
             gains[k] -= ANCHORS * (extent < LARGEST * drawn)  # what is so small and no ring is written
         elif c.kind == "bar":
             gains[k] -= SLIP * (extent < TWIG * drawn or (c not in bodies.held and bodies.slip(c, extent)))
-            gains[k] += NO_BODY * (bodies.ground(c, row) and follows(c, *proposed.course(c)))
+            gains[k] += NO_BODY * (bodies.ground(c, row) and follows(c, proposed.course(c)[0]))
         elif c.kind == "circle" and (bodies.joined(c, extent) > 1 or bodies.axle(c, extent)):
             gains[k] += ANCHORS
     return gains

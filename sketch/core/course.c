@@ -10,7 +10,7 @@ enum {
 }; /* sides that it is drawn with at most, and places along it where it may close */
 static const double CLOSE =
     0.002; /* of its extent: ink that is no further off is followed; so is a circle with 32 sides */
-static const double LOOSE = 0.02; /* likewise: what is off by more was drawn, and no slip where the pen turned */
+static const double LOOSE = 0.04; /* likewise: what is off by more was drawn, and no slip where the pen turned */
 static const double LOOP =
     0.1; /* of an outline's length: what two strokes have beyond the corner where they cross is less */
 

@@ -11,6 +11,7 @@ from pages import Array, box, read
 
 from sim.scene import Polygon
 from sketch.ink import Sketch, Stroke
+from sketch.kernel import depth
 from sketch.recognize import Recognizer, recognize
 from sketch.synthetic import HANDS, Hand, arrow, circle, cross, curve, line, outline
 
@@ -207,3 +208,16 @@ def test_a_rope_along_a_wedge_is_no_slip_at_it(seed: int) -> None:
     scene = read(wedge, wheel, block, *ropes, load, fall(rng)).scene
     assert len(scene.bodies) == 6
     assert not any("left out" in note for note in scene.notes)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_track_that_curves_has_no_corner(seed: int) -> None:
+    """By itself it would be two straight sides; with an X on it, it is ground as it was drawn."""
+    rng = np.random.default_rng(seed)
+    u = np.linspace(0, 1, 50)
+    track = np.stack([130 + 1000 * u, 190 + 470 * (1 - np.exp(-2.6 * u))], axis=1)
+    x = cross(track[30].tolist(), 34, HAND, rng)
+    (body,) = read(curve(track, HAND, rng), x, fall(rng)).scene.bodies
+    assert isinstance(body.shape, Polygon)
+    corners = (np.array(body.shape.vertices) + np.array(body.position)) * (128, -128)
+    assert max(abs(depth(a, b, corners)) for a, b in track.tolist()) < 14
