@@ -34,7 +34,7 @@ MARKED = (
 )
 NO_BODY = 33.0  # nats that an X away from every body is unlikely: it would mean nothing
 SLIP = 25.0  # nats that a short mark on an outline is a slip of the pen and no rod
-SLIPPED = 0.14  # of a body's scale: as near to its outline is an end of such a mark
+SLIPPED = 0.2  # of a body's scale: as near to its outline is an end of such a mark
 TOUCHING = 30.0  # nats that small bars which touch are no rods but a letter
 NEAR_BY = 0.4  # of a bar's extent: as near as the strokes of a letter are
 LETTER = 0.15  # of the page: larger bars are no letter

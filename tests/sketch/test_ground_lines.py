@@ -202,8 +202,8 @@ def test_a_rope_along_a_wedge_is_no_slip_at_it(seed: int) -> None:
     rng = np.random.default_rng(seed)
     wedge = outline([(220, 640), (850, 640), (850, 330)], HAND, rng) + cross((740, 590), 36, HAND, rng)
     wheel = circle((860, 322), 46, HANDS["neat"], rng)
-    block = outline(box(590, 415, 100, 72, -0.457), HAND, rng)
-    ropes = [line([(636, 392), (840, 280)], HAND, rng), line([(906, 322), (906, 520)], HAND, rng)]
+    block = outline(box(588, 411, 100, 80, -0.457), HAND, rng)
+    ropes = [line([(634, 388), (838, 276)], HAND, rng), line([(906, 322), (906, 520)], HAND, rng)]
     load = outline(box(906, 556, 80, 72), HAND, rng)
     scene = read(wedge, wheel, block, *ropes, load, fall(rng)).scene
     assert len(scene.bodies) == 6
